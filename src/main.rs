@@ -1,0 +1,3 @@
+//! The `lucerna` command.
+
+fn main() {}
