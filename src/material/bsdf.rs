@@ -1,7 +1,7 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
 use super::{Conductor, Dielectric, Diffuse};
-use crate::math::{Frame, Vec3};
+use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
@@ -130,7 +130,7 @@ impl Bsdf {
 
     /// Samples a direction for `wo`: `u_lobe` chooses among lobes, `u` within one. `None` carries nothing.
     #[inline]
-    pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: [f32; 2], mode: TransportMode) -> Option<BsdfSample> {
+    pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let wo = self.frame.to_local(wo);
         if wo.z == 0.0 {
             return None;

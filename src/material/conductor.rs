@@ -1,7 +1,7 @@
 //! Metals: a smooth mirror, or GGX microfacets that reflect.
 
 use super::{Density, Ggx, LocalSample, fresnel_complex};
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
@@ -43,7 +43,7 @@ impl Conductor {
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
-    pub fn sample_f(&self, wo: Vec3, u: [f32; 2]) -> Option<LocalSample> {
+    pub fn sample_f(&self, wo: Vec3, u: Vec2) -> Option<LocalSample> {
         let Some(ggx) = &self.roughness else {
             return Some(LocalSample {
                 value: self.fresnel(wo.z.abs()),
@@ -80,7 +80,7 @@ pub(super) fn reflection_pdf(ggx: &Ggx, wo: Vec3, m: Vec3) -> f32 {
 
 /// A visible normal and the direction that it reflects `wo` to; `None` if that goes into the surface.
 #[inline]
-pub(super) fn sample_reflection(ggx: &Ggx, wo: Vec3, u: [f32; 2]) -> Option<(Vec3, Vec3)> {
+pub(super) fn sample_reflection(ggx: &Ggx, wo: Vec3, u: Vec2) -> Option<(Vec3, Vec3)> {
     let m = ggx.sample_visible_normal(wo, u);
     let wi = reflect(wo, m);
     (wo.z * wi.z > 0.0).then_some((m, wi))

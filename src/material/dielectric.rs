@@ -2,7 +2,7 @@
 
 use super::conductor::{half_vector, reflect, reflection_pdf};
 use super::{Density, Ggx, LocalSample, TransportMode, fresnel_dielectric, refract};
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
@@ -55,7 +55,7 @@ impl Dielectric {
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
-    pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: [f32; 2], mode: TransportMode) -> Option<LocalSample> {
+    pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<LocalSample> {
         let Some(ggx) = &self.roughness else { return self.sample_smooth(wo, u_lobe, mode) };
         let m = ggx.sample_visible_normal(wo, u);
         let reflectance = fresnel_dielectric(wo.dot(m), self.eta);

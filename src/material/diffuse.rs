@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_1_PI;
 
 use super::{Density, LocalSample};
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::sampling::{SolidAnglePdf, warp};
 use crate::spectrum::SampledSpectrum;
 
@@ -33,7 +33,7 @@ impl Diffuse {
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
     #[inline]
-    pub fn sample_f(&self, wo: Vec3, u: [f32; 2]) -> Option<LocalSample> {
+    pub fn sample_f(&self, wo: Vec3, u: Vec2) -> Option<LocalSample> {
         let mut wi = warp::sample_cosine_hemisphere(u);
         if wo.z < 0.0 {
             wi.z = -wi.z;

@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 
 /// A GGX distribution; all directions are local.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,13 +74,13 @@ impl Ggx {
     /// Samples a normal visible from `w` (in its upper or lower hemisphere alike; the normal has z >= 0) with density
     /// [`Ggx::visible_normal_pdf`], by spherical caps (Dupuy and Benyoub 2023).
     #[inline]
-    pub fn sample_visible_normal(&self, w: Vec3, u: [f32; 2]) -> Vec3 {
+    pub fn sample_visible_normal(&self, w: Vec3, u: Vec2) -> Vec3 {
         let w = if w.z < 0.0 { -w } else { w };
         // To the configuration where the surface is a hemisphere.
         let wh = Vec3::new(self.alpha_x * w.x, self.alpha_y * w.y, w.z).normalize();
         // A point of the spherical cap above -wh.z is where light from wh is reflected to.
-        let (sin_phi, cos_phi) = (2.0 * PI * u[0]).sin_cos();
-        let z = (1.0 - u[1]) * (1.0 + wh.z) - wh.z;
+        let (sin_phi, cos_phi) = (2.0 * PI * u.x).sin_cos();
+        let z = (1.0 - u.y) * (1.0 + wh.z) - wh.z;
         let r = (1.0 - z * z).max(0.0).sqrt();
         let m = Vec3::new(r * cos_phi, r * sin_phi, z) + wh;
         Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
