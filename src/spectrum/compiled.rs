@@ -153,3 +153,134 @@ fn spectral_rgb(rgb: &RgbSpectrum) -> Form {
         (Shape::Sigmoid(polynomial), false) => Form::ScaledSigmoid(rgb.scale, polynomial),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{Outside, named_spectra};
+
+    fn examples() -> Vec<Spectrum> {
+        let mut all: Vec<_> = named_spectra().filter_map(Spectrum::named).collect();
+        all.extend([
+            Spectrum::constant(0.7),
+            Spectrum::rgb_albedo([0.9, 0.1, 0.05]),
+            Spectrum::rgb_unbounded([0.2, 3.0, 7.0]),
+            Spectrum::rgb_illuminant([17.0, 12.0, 4.0]),
+            Spectrum::rgb_illuminant([2.0; 3]),
+            Spectrum::blackbody(3000.0),
+            Spectrum::tabulated(
+                vec![(400.0, 0.0), (500.0, 8.0), (600.0, 15.6), (700.0, 18.4)],
+                Outside::Zero,
+            ),
+        ]);
+        all
+    }
+
+    #[test]
+    fn samples_are_values_and_average_to_the_integral() {
+        for spectrum in examples() {
+            let compiled = spectrum
+                .compile(ColorMode::Spectral, SpectrumRole::Emission)
+                .scaled(3.0);
+            let (mut luminance, n) = (0.0, 1 << 16);
+            for i in 0..n {
+                let w = Wavelengths::sample_visible((i as f32 + 0.5) / n as f32);
+                let s = compiled.sample(&w);
+                let y = s * cie::xyz_bar(&w)[1];
+                luminance += f64::from(y.safe_div(w.pdf()).mean()) / f64::from(n);
+                if i % 64 == 0 {
+                    // Tables are looked up at the nearest nm, and D65 in the value of an rgb illuminant too.
+                    let [exact, nearest] = [w.lambda[0], w.lambda[0].round()].map(|nm| 3.0 * spectrum.value(nm));
+                    let close = |v: f32| (s.0[0] - v).abs() <= 1e-5 * v.abs() + 1e-6;
+                    assert!(close(nearest) || close(exact), "{spectrum:?} at {}: {s:?}", w.lambda[0]);
+                }
+            }
+            // The midpoint rule, some 250 points a nm, against steps at every nm; half an entry at either end is never
+            // sampled.
+            let expected = f64::from(3.0 * spectrum.luminance());
+            let ends = 3.0 * spectrum.max_value() * cie::y_integral() * 1e-6;
+            let bound = 1e-4 * expected + f64::from(ends);
+            assert!(
+                (luminance - expected).abs() < bound,
+                "{spectrum:?}: {luminance} and {expected}"
+            );
+            assert!((f64::from(compiled.photometric_luminance()) / expected - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn rgb_emission_is_what_the_sensor_sees_of_the_spectral_one() {
+        for spectrum in examples() {
+            let lanes = spectrum.compile(ColorMode::Rgb, SpectrumRole::Emission);
+            let SampledSpectrum([r, g, b, unused]) = lanes.sample(&Wavelengths::rgb());
+            assert_eq!(unused, 0.0);
+            let seen = cie::xyz_to_srgb(cie::integrate_xyz(|nm| spectrum.value(nm)));
+            for (lane, expected) in [r, g, b].into_iter().zip(seen) {
+                let expected = expected.max(0.0) as f32;
+                assert!(
+                    (lane - expected).abs() <= 1e-5 * expected + 1e-3,
+                    "{spectrum:?}: {lane} and {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_rgb_light_over_its_photometric_has_its_rgb() {
+        let light = Spectrum::rgb_illuminant([17.0, 12.0, 4.0]);
+        let lanes = light.compile(ColorMode::Rgb, SpectrumRole::Emission);
+        let SampledSpectrum(scaled) = lanes.scaled(1.0 / light.photometric()).sample(&Wavelengths::rgb());
+        for (a, b) in scaled.into_iter().zip([17.0, 12.0, 4.0, 0.0]) {
+            assert!((a - b).abs() <= 2.0 * f32::EPSILON * b, "{scaled:?}");
+        }
+    }
+
+    #[test]
+    fn rgb_reflectance_is_the_colour_under_d65() {
+        let compile = |s: &Spectrum| {
+            let compiled = s.compile(ColorMode::Rgb, SpectrumRole::Reflectance);
+            compiled.sample(&Wavelengths::rgb()).0
+        };
+        assert_eq!(compile(&Spectrum::constant(0.3)), [0.3, 0.3, 0.3, 0.0]);
+        assert_eq!(compile(&Spectrum::rgb_albedo([0.9, 0.1, 0.0])), [0.9, 0.1, 0.0, 0.0]);
+        // A table of an rgb albedo's own spectrum gives the rgb back.
+        let albedo = Spectrum::rgb_albedo([0.7, 0.2, 0.1]);
+        let table = (360..=830).map(|nm| (nm as f32, albedo.value(nm as f32))).collect();
+        let lanes = compile(&Spectrum::tabulated(table, Outside::Constant));
+        for (a, b) in lanes.into_iter().zip([0.7, 0.2, 0.1, 0.0]) {
+            assert!((a - b).abs() < 2e-6, "{lanes:?}");
+        }
+    }
+
+    #[test]
+    fn indices_are_those_of_the_d_line_in_rgb() {
+        let glass = Spectrum::named("glass-F11").expect("known");
+        let spectral = glass.compile(ColorMode::Spectral, SpectrumRole::Ior);
+        let rgb = glass.compile(ColorMode::Rgb, SpectrumRole::Ior);
+        assert!(!spectral.is_constant_over_wavelengths() && rgb.is_constant_over_wavelengths());
+        assert_eq!(
+            rgb.sample(&Wavelengths::rgb()),
+            SampledSpectrum::splat(glass.value(LAMBDA_D))
+        );
+        let flat = Spectrum::tabulated(vec![(400.0, 1.5), (700.0, 1.5)], Outside::Constant);
+        for s in [flat, Spectrum::constant(1.5)] {
+            assert!(
+                s.compile(ColorMode::Spectral, SpectrumRole::Ior)
+                    .is_constant_over_wavelengths()
+            );
+        }
+    }
+
+    #[test]
+    fn black_is_recognised() {
+        let compile = |s: Spectrum| s.compile(ColorMode::Spectral, SpectrumRole::Emission);
+        assert!(compile(Spectrum::rgb_illuminant([0.0; 3])).is_black());
+        assert!(compile(Spectrum::tabulated(vec![], Outside::Zero)).is_black());
+        assert!(
+            compile(Spectrum::rgb_illuminant([1.0, 0.0, 0.0]))
+                .scaled(0.0)
+                .is_black()
+        );
+        assert!(!compile(Spectrum::rgb_illuminant([1.0, 0.0, 0.0])).is_black());
+    }
+}

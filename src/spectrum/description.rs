@@ -201,7 +201,7 @@ pub(super) fn interpolate(points: &[(f32, f32)], outside: Outside, nm: f32) -> f
     }
     let ((x0, y0), (x1, y1)) = (points[above.saturating_sub(1)], points[above]);
     let t = (nm - x0) / (x1 - x0);
-    y0 * (1.0 - t) + y1 * t
+    y0 + (y1 - y0) * t
 }
 
 /// Planck's law over its largest value at this temperature.
