@@ -55,7 +55,7 @@ impl Sampler {
         let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
         SampleStream {
             key: combine(mix64(self.seed ^ GOLDEN), pixel),
-            index: sample_index,
+            reversed_index: sample_index.reverse_bits(),
             kind: self.kind,
         }
     }
@@ -72,7 +72,7 @@ impl Sampler {
 pub struct SampleStream {
     /// A hash of seed, pixel and branches.
     key: u64,
-    index: u32,
+    reversed_index: u32,
     kind: SamplerKind,
 }
 
@@ -145,8 +145,8 @@ impl SampleStream {
     /// 128 random bits for (key, index, group).
     #[inline]
     fn independent_bits(&self, group: u32) -> [u64; 2] {
-        let hash = combine(self.key, u64::from(group) << 32 | u64::from(self.index));
-        [mix64(hash), mix64(hash.wrapping_add(GOLDEN))]
+        let hash = self.split_mix(u64::from(self.reversed_index) << 32 | u64::from(group));
+        [hash, mix64(hash.wrapping_add(GOLDEN))]
     }
 
     /// The index of the Sobol point that this sample takes in `group`, and the seeds of its dimensions' scrambles. The
@@ -154,10 +154,17 @@ impl SampleStream {
     /// different groups are paired at random.
     #[inline]
     fn shuffled_index(&self, group: u32) -> (u32, [u64; 2]) {
-        let hash = combine(self.key, u64::from(group));
-        let shuffled = scramble_reversed(self.index.reverse_bits(), mix64(hash) as u32);
+        let hash = self.split_mix(u64::from(group));
+        let shuffled = scramble_reversed(self.reversed_index, hash as u32);
         let seeds = [mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32))];
         (shuffled.reverse_bits(), seeds)
+    }
+
+    /// The number at place `counter` of the SplitMix64 generator (Steele, Lea and Flood 2014) whose state is the key. Keys are
+    /// hashes, so that no two of these sequences come near each other.
+    #[inline]
+    fn split_mix(&self, counter: u64) -> u64 {
+        mix64(self.key.wrapping_add(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
     }
 }
 
