@@ -16,7 +16,11 @@ impl Sensor {
     pub fn new(mode: ColorMode, imaging_ratio: f64) -> Self {
         let imaging_ratio = imaging_ratio as f32;
         let rgb_from_xyz = cie::srgb_from_xyz_rows().map(|row| row.map(|c| c * imaging_ratio));
-        Self { mode, rgb_from_xyz, imaging_ratio }
+        Self {
+            mode,
+            rgb_from_xyz,
+            imaging_ratio,
+        }
     }
 
     /// Linear sRGB of the spectral radiance `l` of one sample: an estimate of its integral against the colour matching functions.
@@ -28,7 +32,8 @@ impl Sensor {
             ColorMode::Spectral => {
                 let l = l.safe_div(lambda.pdf());
                 let xyz = cie::xyz_bar(lambda).map(|bar| (bar * l).mean());
-                self.rgb_from_xyz.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
+                self.rgb_from_xyz
+                    .map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
             }
         }
     }

@@ -61,7 +61,10 @@ impl AreaLight {
     /// This light, `factor` times as bright.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        Self { radiance: self.radiance.scaled(factor), ..self }
+        Self {
+            radiance: self.radiance.scaled(factor),
+            ..self
+        }
     }
 
     /// Its surface area, one side.

@@ -49,16 +49,21 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
-        let materials = desc.materials.iter().map(|material| builder.material(material)).collect();
+        let materials = desc
+            .materials
+            .iter()
+            .map(|material| builder.material(material))
+            .collect();
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
         let light_sampler = match desc.integrator {
-            IntegratorDesc::Path { light_sampler: LightSamplerKind::Uniform, .. } => {
-                LightSampler::uniform(&builder.lights)
-            }
+            IntegratorDesc::Path {
+                light_sampler: LightSamplerKind::Uniform,
+                ..
+            } => LightSampler::uniform(&builder.lights),
             IntegratorDesc::Path { .. } => LightSampler::power(&builder.lights, &bounds),
         };
         Ok(Self {
@@ -78,7 +83,8 @@ impl Scene {
 
 impl SceneBuilder<'_> {
     fn problem(&mut self, span: Span, message: impl Into<String>) {
-        self.problems.push(self.desc.sources.diagnostic(Severity::Error, span, message.into()));
+        self.problems
+            .push(self.desc.sources.diagnostic(Severity::Error, span, message.into()));
     }
 
     fn add_shapes(&mut self) {
@@ -132,9 +138,15 @@ impl SceneBuilder<'_> {
             Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.is_some()),
         };
         let id = self.world.add_geometry(placed.geometry);
-        self.surfaces.push(Surface { material: shape.material.0, lights });
+        self.surfaces.push(Surface {
+            material: shape.material.0,
+            lights,
+        });
         let instance = placed.motion.map(|world_from_object| Instance {
-            group: self.world.add_group(Group { geometries: vec![id], instances: Vec::new() }),
+            group: self.world.add_group(Group {
+                geometries: vec![id],
+                instances: Vec::new(),
+            }),
             world_from_object,
             mask: u32::MAX,
         });
@@ -151,7 +163,11 @@ impl SceneBuilder<'_> {
                 .map(|sphere| {
                     let scale = uniform_scale(&sphere.world_from_object().matrix3);
                     let radius = sphere.radius() * scale.ok_or("an area light on an ellipsoid is not supported")?;
-                    Ok(EmitterShape::Sphere { center: sphere.center(), radius, inward: sphere.has_flipped_normal() })
+                    Ok(EmitterShape::Sphere {
+                        center: sphere.center(),
+                        radius,
+                        inward: sphere.has_flipped_normal(),
+                    })
                 })
                 .collect(),
         };
@@ -208,27 +224,35 @@ impl SceneBuilder<'_> {
 
     fn material(&self, desc: &MaterialDesc) -> Material {
         match &desc.kind {
-            MaterialKind::Diffuse { reflectance } => {
-                Material::Diffuse { reflectance: self.spectra.albedo(reflectance) }
-            }
+            MaterialKind::Diffuse { reflectance } => Material::Diffuse {
+                reflectance: self.spectra.albedo(reflectance),
+            },
             MaterialKind::Conductor { interface, roughness } => Material::Conductor {
                 ior: match interface {
-                    ConductorDesc::Ior { eta, k } => {
-                        ConductorIor::Measured { eta: self.spectra.metal_index(eta), k: self.spectra.metal_index(k) }
-                    }
+                    ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
+                        eta: self.spectra.metal_index(eta),
+                        k: self.spectra.metal_index(k),
+                    },
                     ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(self.spectra.albedo(r)),
                 },
                 roughness: microfacets(*roughness),
             },
-            MaterialKind::Dielectric { eta, roughness } => {
-                Material::Dielectric { eta: self.spectra.glass_index(eta), roughness: microfacets(*roughness) }
-            }
+            MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
+                eta: self.spectra.glass_index(eta),
+                roughness: microfacets(*roughness),
+            },
         }
     }
 }
 
 fn microfacets(roughness: RoughnessDesc) -> Option<Ggx> {
-    let alpha = |r: f32| if roughness.remap { Ggx::alpha_from_roughness(r) } else { r };
+    let alpha = |r: f32| {
+        if roughness.remap {
+            Ggx::alpha_from_roughness(r)
+        } else {
+            r
+        }
+    };
     Ggx::new(alpha(roughness.u), alpha(roughness.v))
 }
 

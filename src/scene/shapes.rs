@@ -28,7 +28,10 @@ pub(super) fn place(shape: &ShapeDesc) -> Result<PlacedShape, String> {
             Shape::Spheres(vec![sphere.with_flipped_normal(shape.reverse_orientation)])
         }
     };
-    Ok(PlacedShape { geometry: Geometry::opaque(shape), motion })
+    Ok(PlacedShape {
+        geometry: Geometry::opaque(shape),
+        motion,
+    })
 }
 
 /// The motion that a description means.
@@ -53,7 +56,9 @@ fn mesh_in_space(
         let normal_matrix = transform.matrix3.inverse().transpose();
         let sign = if reverse_orientation { -1.0 } else { 1.0 };
         let normals = mesh.normals.iter().map(|n| {
-            (normal_matrix * n.as_dvec3()).try_normalize().map_or(Vec3::ZERO, |n| (sign * n).as_vec3())
+            (normal_matrix * n.as_dvec3())
+                .try_normalize()
+                .map_or(Vec3::ZERO, |n| (sign * n).as_vec3())
         });
         result = result.with_normals(normals.collect())?;
     }

@@ -57,7 +57,12 @@ impl View {
         let resolution = overrides.resolution.unwrap_or(view.film.resolution);
         let crop = overrides.crop.unwrap_or_else(|| {
             let crop = view.film.crop.pixels(resolution);
-            PixelRect { x0: crop.x0, y0: crop.y0, x1: crop.x1, y1: crop.y1 }
+            PixelRect {
+                x0: crop.x0,
+                y0: crop.y0,
+                x1: crop.x1,
+                y1: crop.y1,
+            }
         });
         if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 || crop.x1 > resolution[0] || crop.y1 > resolution[1] {
             let [width, height] = resolution;
@@ -79,7 +84,11 @@ impl View {
             crop,
             filter,
             sensor: Sensor::new(color, view.film.imaging_ratio()),
-            sampler: Sampler::new(kind, overrides.seed, overrides.spp.unwrap_or(view.sampler.pixel_samples)),
+            sampler: Sampler::new(
+                kind,
+                overrides.seed,
+                overrides.spp.unwrap_or(view.sampler.pixel_samples),
+            ),
             filename: view.film.filename.clone(),
         })
     }
