@@ -1,1 +1,5 @@
-//! To be written.
+//! Wavelengths and what depends on them.
+mod sampled;
+mod wavelengths;
+pub use sampled::{LANES, SampledSpectrum};
+pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};
