@@ -92,9 +92,9 @@ pub fn generate(include: &Path, path: &Path) -> Result<(), String> {
         .layout_tests(true)
         .allowlist_recursively(true)
         .parse_callbacks(Box::new(bindgen::CargoCallbacks::new()));
-    builder = FUNCTIONS.iter().fold(builder, |b, name| b.allowlist_function(name));
-    builder = TYPES.iter().fold(builder, |b, name| b.allowlist_type(name));
-    builder = VARIABLES.iter().fold(builder, |b, name| b.allowlist_var(name));
+    builder = FUNCTIONS.iter().fold(builder, Builder::allowlist_function);
+    builder = TYPES.iter().fold(builder, Builder::allowlist_type);
+    builder = VARIABLES.iter().fold(builder, Builder::allowlist_var);
     let bindings = builder
         .generate()
         .map_err(|error| format!("bindgen cannot read the headers in {}: {error}", include.display()))?;

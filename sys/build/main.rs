@@ -30,7 +30,7 @@ fn run() -> Result<(), String> {
     let arch = required("CARGO_CFG_TARGET_ARCH")?;
     let prefix = variable("EMBREE_DIR").map(PathBuf::from);
     let found = find::find(prefix.as_deref(), &arch)?;
-    // A new installation must be noticed even where this one stays.
+    // An upgrade in place must be noticed.
     println!("cargo::rerun-if-changed={}", found.include.display());
     println!("cargo::rerun-if-changed={}", found.library.display());
 

@@ -60,8 +60,8 @@ fn query(filter: RTCFilterFunctionN, user: *mut c_void) -> EmbreeQuery {
 /// Ray `i` starts at z = 1 + i and goes down; odd ones miss the triangle.
 fn ray(i: usize) -> RTCRay {
     RTCRay {
-        org_x: if i % 2 == 0 { 0.25 } else { 0.75 },
-        org_y: if i % 2 == 0 { 0.25 } else { 0.75 },
+        org_x: if i.is_multiple_of(2) { 0.25 } else { 0.75 },
+        org_y: if i.is_multiple_of(2) { 0.25 } else { 0.75 },
         org_z: 1.0 + i as f32,
         tnear: 0.0,
         dir_x: 0.0,
@@ -84,7 +84,7 @@ fn empty_hit() -> RTCHit {
 
 /// Whether lane `i` hits: even ones, and only where the lane was asked for.
 fn expected(i: usize, valid: i32) -> bool {
-    i % 2 == 0 && valid != 0
+    i.is_multiple_of(2) && valid != 0
 }
 
 macro_rules! packet_test {
