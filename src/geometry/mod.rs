@@ -1,1 +1,58 @@
-//! To be written.
+//! Shapes, the world they make up, packets of rays, and what a hit says about the surface.
+
+mod mesh;
+mod packet;
+mod sphere;
+mod surface;
+mod world;
+
+pub use mesh::{MeshError, TriangleMesh};
+pub use packet::{HitPacket, LANES, Ray, RayPacket};
+pub use sphere::{Sphere, SphereHits};
+pub use surface::{Hit, SurfaceInteraction};
+pub use world::{Geometry, Group, Instance, Opacity, Shape, World, WorldBuilder};
+
+macro_rules! index_newtype {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// As an index into a slice.
+            #[inline]
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+
+            /// From a position in a slice.
+            ///
+            /// # Panics
+            /// At 2^32 - 1 and above: that value means "none" in packets.
+            #[inline]
+            pub fn from_index(index: usize) -> Self {
+                match u32::try_from(index) {
+                    Ok(index) if index != u32::MAX => Self(index),
+                    _ => panic!("more than 2^32 - 2 of {}", stringify!($name)),
+                }
+            }
+        }
+    };
+}
+
+index_newtype! {
+    /// A geometry of a [`World`].
+    GeometryId
+}
+index_newtype! {
+    /// A primitive of a geometry: a triangle or a sphere.
+    PrimitiveId
+}
+index_newtype! {
+    /// A group of a [`World`].
+    GroupId
+}
+index_newtype! {
+    /// An instance at the top level of a [`World`].
+    InstanceId
+}

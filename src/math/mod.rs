@@ -1,1 +1,15 @@
-//! To be written.
+//! Vectors, frames, transforms, bounds and the offsets that keep rays off the surface they leave.
+//!
+//! Vectors are glam's. Positions that reach a ray query are `f32`; transforms, and spheres, stay in `f64` from the parser to
+//! the hit.
+
+mod bounds;
+mod frame;
+mod motion;
+mod offset;
+
+pub use bounds::Bounds3;
+pub use frame::Frame;
+pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, Quat, Vec2, Vec3};
+pub use motion::{AnimatedTransform, Decomposition, transform_point};
+pub use offset::{gamma, offset_ray_origin};

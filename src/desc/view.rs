@@ -1,0 +1,212 @@
+//! Views: a camera with its film, filter and sampler.
+
+use std::path::PathBuf;
+
+use super::MotionDesc;
+use crate::error::Span;
+
+/// One picture to be taken of the scene.
+#[derive(Clone, Debug)]
+pub struct ViewDesc {
+    /// Distinct among the views of a scene, fit to be a part of a file name. A single camera without a name is `camera`, several
+    /// are `camera1`, `camera2`, ...
+    pub name: String,
+    /// Where from.
+    pub camera: CameraDesc,
+    /// Onto what.
+    pub film: FilmDesc,
+    /// How much of its surroundings a pixel sees.
+    pub filter: FilterDesc,
+    /// With which sample points.
+    pub sampler: SamplerDesc,
+    /// The `Camera` directive; the whole file's first byte if there is none.
+    pub span: Span,
+}
+
+/// A camera. In its own space it looks along +z, x is to the right of the picture and y is up (pbrt's left-handed convention).
+#[derive(Clone, Debug)]
+pub struct CameraDesc {
+    /// The projection.
+    pub kind: CameraKind,
+    /// `[x_min, x_max, y_min, y_max]` of the picture on the screen plane, if the file gives it; see
+    /// [`CameraDesc::screen_window`].
+    pub screen: Option<[f64; 4]>,
+    /// Width over height, if the file gives it; else that of the resolution.
+    pub frame_aspect: Option<f64>,
+    /// In scene units, not negative; 0 is a pinhole.
+    pub lens_radius: f64,
+    /// Distance of the plane of focus, in scene units, positive.
+    pub focal_distance: f64,
+    /// When the shutter opens and closes, in the time of [`super::SceneDesc::transform_times`]; open < close.
+    pub shutter: [f64; 2],
+    /// The inverse of pbrt's current transform at the `Camera` directive.
+    pub world_from_camera: MotionDesc,
+}
+
+/// The projection of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CameraKind {
+    /// Through a point.
+    Perspective {
+        /// Angle, in degrees, that the span from -1 to 1 of the screen plane covers (with the default screen window: the angle of
+        /// the shorter side of the picture); in (0, 180).
+        fov: f64,
+        /// Rays start where they cross the plane at this depth before the camera (measured along its z axis), so that what is
+        /// nearer is not seen; not negative; 0 (the default): at the eye or on the lens.
+        near_clip: f64,
+    },
+    /// Parallel: the screen window is in scene units.
+    Orthographic,
+}
+
+impl CameraDesc {
+    /// `[x_min, x_max, y_min, y_max]` of the picture on the screen plane: what the file says, else -1 to 1 along the shorter side
+    /// and the aspect ratio along the other.
+    pub fn screen_window(&self, resolution: [u32; 2]) -> [f64; 4] {
+        if let Some(window) = self.screen {
+            return window;
+        }
+        let aspect = self
+            .frame_aspect
+            .unwrap_or_else(|| f64::from(resolution[0]) / f64::from(resolution[1]));
+        if aspect > 1.0 {
+            [-aspect, aspect, -1.0, 1.0]
+        } else {
+            [-1.0, 1.0, -1.0 / aspect, 1.0 / aspect]
+        }
+    }
+}
+
+/// What the picture is taken on.
+#[derive(Clone, Debug)]
+pub struct FilmDesc {
+    /// Width and height in pixels, neither 0. Default 1280 by 720.
+    pub resolution: [u32; 2],
+    /// The part of it that is rendered.
+    pub crop: CropDesc,
+    /// The output file, as typed, if the scene names one.
+    pub filename: Option<PathBuf>,
+    /// Sensitivity; default 100; positive.
+    pub iso: f64,
+    /// How long the shutter is open: close - open of the view's camera, as in pbrt-v4; positive.
+    pub exposure_time: f64,
+    /// The `Film` directive; the whole file's first byte if there is none.
+    pub span: Span,
+}
+
+impl FilmDesc {
+    /// What the sensor multiplies radiance by: `exposure_time * iso / 100`, as in pbrt-v4. It is 1 by default.
+    pub fn imaging_ratio(&self) -> f64 {
+        self.exposure_time * self.iso / 100.0
+    }
+}
+
+/// Which part of an image is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CropDesc {
+    /// All of it.
+    Full,
+    /// Pixels, whatever the resolution.
+    Pixels(PixelRect),
+    /// `[x0, x1, y0, y1]` as fractions of the resolution, in [0, 1], in order.
+    Window([f32; 4]),
+}
+
+/// A rectangle of pixels: origin top left, `x1` and `y1` exclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelRect {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// One past the last column.
+    pub x1: u32,
+    /// One past the last row.
+    pub y1: u32,
+}
+
+impl CropDesc {
+    /// The pixels meant, clamped to the image; pbrt rounds both ends of a window up. Empty only if `resolution` is not the one of
+    /// the file, for which the parser has checked it.
+    pub fn pixels(&self, resolution: [u32; 2]) -> PixelRect {
+        let [width, height] = resolution;
+        match *self {
+            Self::Full => PixelRect {
+                x0: 0,
+                y0: 0,
+                x1: width,
+                y1: height,
+            },
+            Self::Pixels(r) => PixelRect {
+                x0: r.x0.min(width),
+                y0: r.y0.min(height),
+                x1: r.x1.min(width),
+                y1: r.y1.min(height),
+            },
+            Self::Window([x0, x1, y0, y1]) => {
+                let edge = |size: u32, fraction: f32| ((size as f32 * fraction).ceil() as u32).min(size);
+                PixelRect {
+                    x0: edge(width, x0),
+                    y0: edge(height, y0),
+                    x1: edge(width, x1),
+                    y1: edge(height, y1),
+                }
+            }
+        }
+    }
+}
+
+/// A pixel's reconstruction filter, a product of one function of x and the same of y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilterDesc {
+    /// The function.
+    pub kind: FilterKind,
+    /// Half the width of its support in x and y, in pixels; positive.
+    pub radius: [f64; 2],
+}
+
+/// The shape of a pixel filter. The default is a Gaussian of radius 1.5.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilterKind {
+    /// Constant; default radius 0.5.
+    Box,
+    /// A tent; default radius 2.
+    Triangle,
+    /// A Gaussian, less its value at the radius; default radius 1.5.
+    Gaussian {
+        /// Standard deviation in pixels, default 0.5; positive.
+        sigma: f64,
+    },
+    /// Mitchell and Netravali's cubic, stretched to the radius; default radius 2.
+    Mitchell {
+        /// Default 1/3.
+        b: f64,
+        /// Default 1/3.
+        c: f64,
+    },
+    /// A sinc under a Lanczos window; default radius 4.
+    LanczosSinc {
+        /// How many of its cycles fit into the radius, default 3; positive.
+        tau: f64,
+    },
+    /// The four-term Blackman-Harris window (Lucerna's extension); default radius 2.
+    BlackmanHarris,
+}
+
+/// Where sample points come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SamplerDesc {
+    /// The sequence.
+    pub kind: SamplerKind,
+    /// Samples a pixel, positive. Default 16, for `independent` 4.
+    pub pixel_samples: u32,
+}
+
+/// A sequence of sample points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Independent random numbers.
+    Independent,
+    /// Owen-scrambled Sobol points; the default.
+    Sobol,
+}

@@ -1,0 +1,205 @@
+//! Indexed triangle meshes, with vertices that may move.
+
+use crate::math::{Bounds3, Vec2, Vec3};
+
+/// An indexed triangle mesh. Vertices are given at one or more scene times, evenly spaced over [0, 1], and move linearly
+/// between them; normals and texture coordinates do not change with time.
+#[derive(Clone, Debug)]
+pub struct TriangleMesh {
+    /// One array a time step, each with one vertex more than the mesh has: Embree reads 16 bytes at the last one.
+    positions: Vec<Vec<Vec3>>,
+    indices: Vec<[u32; 3]>,
+    normals: Option<Vec<Vec3>>,
+    uvs: Option<Vec<Vec2>>,
+    flip_normal: bool,
+}
+
+/// Why arrays do not make a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// No time step, or none with the same number of vertices as the first.
+    #[error("every time step must have as many vertices as the first, and there must be one")]
+    TimeSteps,
+    /// An index beyond the vertices.
+    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices}")]
+    IndexOutOfRange {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A vertex is NaN or infinite.
+    #[error("vertex {0} is not finite")]
+    NotFinite(usize),
+    /// Normals or texture coordinates do not match the vertices.
+    #[error("there are {count} {what} for {vertices} vertices")]
+    AttributeCount {
+        /// `normals` or `texture coordinates`.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there should be.
+        vertices: usize,
+    },
+}
+
+impl TriangleMesh {
+    /// A mesh of `indices` into `positions`, one array of world or object space positions for each time step.
+    pub fn new(mut positions: Vec<Vec<Vec3>>, indices: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        let vertices = positions.first().ok_or(MeshError::TimeSteps)?.len();
+        for step in &mut positions {
+            if step.len() != vertices {
+                return Err(MeshError::TimeSteps);
+            }
+            if let Some(bad) = step.iter().position(|p| !p.is_finite()) {
+                return Err(MeshError::NotFinite(bad));
+            }
+            step.reserve_exact(1);
+            step.push(Vec3::ZERO);
+        }
+        for (triangle, corners) in indices.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices) {
+                return Err(MeshError::IndexOutOfRange {
+                    triangle,
+                    vertex,
+                    vertices,
+                });
+            }
+        }
+        Ok(Self {
+            positions,
+            indices,
+            normals: None,
+            uvs: None,
+            flip_normal: false,
+        })
+    }
+
+    /// With shading normals, one a vertex, of any length.
+    pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Self, MeshError> {
+        self.check_count("normals", normals.len())?;
+        self.normals = Some(normals);
+        Ok(self)
+    }
+
+    /// With texture coordinates, one a vertex.
+    pub fn with_uvs(mut self, uvs: Vec<Vec2>) -> Result<Self, MeshError> {
+        self.check_count("texture coordinates", uvs.len())?;
+        self.uvs = Some(uvs);
+        Ok(self)
+    }
+
+    /// With the geometric normal on the side from which the vertices go round clockwise, instead of counterclockwise.
+    #[must_use]
+    pub fn with_flipped_normal(mut self, flip: bool) -> Self {
+        self.flip_normal = flip;
+        self
+    }
+
+    fn check_count(&self, what: &'static str, count: usize) -> Result<(), MeshError> {
+        let vertices = self.vertex_count();
+        if count == vertices {
+            Ok(())
+        } else {
+            Err(MeshError::AttributeCount { what, count, vertices })
+        }
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.positions[0].len() - 1
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Number of time steps, at least 1.
+    pub fn time_steps(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether vertices move.
+    pub fn is_moving(&self) -> bool {
+        self.positions.len() > 1
+    }
+
+    /// The vertices at a time step, followed by one that pads the buffer.
+    pub fn padded_positions(&self, step: usize) -> &[Vec3] {
+        &self.positions[step]
+    }
+
+    /// The vertices at a time step.
+    pub fn positions(&self, step: usize) -> &[Vec3] {
+        let padded = &self.positions[step];
+        &padded[..padded.len() - 1]
+    }
+
+    /// The corners of each triangle.
+    pub fn indices(&self) -> &[[u32; 3]] {
+        &self.indices
+    }
+
+    /// Shading normals, one a vertex.
+    pub fn normals(&self) -> Option<&[Vec3]> {
+        self.normals.as_deref()
+    }
+
+    /// Texture coordinates, one a vertex.
+    pub fn uvs(&self) -> Option<&[Vec2]> {
+        self.uvs.as_deref()
+    }
+
+    /// Whether the geometric normal is on the clockwise side.
+    pub fn has_flipped_normal(&self) -> bool {
+        self.flip_normal
+    }
+
+    /// The corners of a triangle at scene time `time`.
+    #[inline]
+    pub fn triangle(&self, triangle: usize, time: f32) -> [Vec3; 3] {
+        let corners = self.indices[triangle];
+        let (step, fraction) = self.time_step(time);
+        let now = corners.map(|v| self.positions[step][v as usize]);
+        if fraction == 0.0 {
+            return now;
+        }
+        let next = corners.map(|v| self.positions[step + 1][v as usize]);
+        std::array::from_fn(|i| now[i] * (1.0 - fraction) + next[i] * fraction)
+    }
+
+    /// The time step at or before `time`, and how far towards the next one it is, in [0, 1]. 0 and 0 if nothing moves.
+    #[inline]
+    pub fn time_step(&self, time: f32) -> (usize, f32) {
+        let segments = self.positions.len() - 1;
+        if segments == 0 {
+            return (0, 0.0);
+        }
+        let scaled = time * segments as f32;
+        let step = (scaled as usize).min(segments - 1);
+        (step, scaled - step as f32)
+    }
+
+    /// A box around a triangle at a time step.
+    pub fn triangle_bounds(&self, triangle: usize, step: usize) -> Bounds3 {
+        Bounds3::from_points(self.indices[triangle].map(|v| self.positions[step][v as usize]))
+    }
+
+    /// A box around all used and unused vertices over all times.
+    pub fn bounds(&self) -> Bounds3 {
+        (0..self.time_steps())
+            .map(|step| Bounds3::from_points(self.positions(step).iter().copied()))
+            .fold(Bounds3::EMPTY, Bounds3::union)
+    }
+
+    /// Bytes of its arrays.
+    pub fn memory(&self) -> usize {
+        self.positions.iter().map(|p| size_of_val(p.as_slice())).sum::<usize>()
+            + size_of_val(self.indices.as_slice())
+            + self.normals.as_ref().map_or(0, |n| size_of_val(n.as_slice()))
+            + self.uvs.as_ref().map_or(0, |u| size_of_val(u.as_slice()))
+    }
+}

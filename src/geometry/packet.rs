@@ -1,0 +1,185 @@
+//! Rays and hits in struct-of-arrays packets.
+
+use crate::math::Vec3;
+
+/// Rays in a packet: the widest that both backends trace natively on AVX2.
+pub const LANES: usize = 8;
+
+/// One ray, as it is put into a packet.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Origin, world space.
+    pub origin: Vec3,
+    /// Direction, world space, of any length but 0; distances are in its units.
+    pub direction: Vec3,
+    /// Hits nearer than this do not count.
+    pub tnear: f32,
+    /// Nor those farther than this; may be infinite.
+    pub tfar: f32,
+    /// Scene time, in [0, 1].
+    pub time: f32,
+    /// Only geometries and instances that share a bit with this are seen.
+    pub mask: u32,
+    /// Handed to a hit filter, so that what it decides can be a function of the ray.
+    pub id: u32,
+}
+
+impl Ray {
+    /// A ray that sees everything, at any distance.
+    pub fn new(origin: Vec3, direction: Vec3, time: f32) -> Self {
+        Self {
+            origin,
+            direction,
+            tnear: 0.0,
+            tfar: f32::INFINITY,
+            time,
+            mask: u32::MAX,
+            id: 0,
+        }
+    }
+
+    /// Whether a backend may be given it: nothing NaN, origin and direction finite, the direction not zero, time in [0, 1].
+    #[inline]
+    pub fn is_valid(&self) -> bool {
+        self.origin.is_finite()
+            && self.direction.is_finite()
+            && self.direction != Vec3::ZERO
+            && self.tnear >= 0.0
+            && !self.tfar.is_nan()
+            && (0.0..=1.0).contains(&self.time)
+    }
+}
+
+/// Eight rays. A lane takes part if `tnear <= tfar`; every lane that does must be [valid](Ray::is_valid).
+///
+/// The layout is that of Embree's `RTCRay8`.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct RayPacket {
+    /// Origin, x.
+    pub org_x: [f32; LANES],
+    /// Origin, y.
+    pub org_y: [f32; LANES],
+    /// Origin, z.
+    pub org_z: [f32; LANES],
+    /// Start of the segment.
+    pub tnear: [f32; LANES],
+    /// Direction, x.
+    pub dir_x: [f32; LANES],
+    /// Direction, y.
+    pub dir_y: [f32; LANES],
+    /// Direction, z.
+    pub dir_z: [f32; LANES],
+    /// Scene time, in [0, 1].
+    pub time: [f32; LANES],
+    /// End of the segment.
+    pub tfar: [f32; LANES],
+    /// See [`Ray::mask`].
+    pub mask: [u32; LANES],
+    /// See [`Ray::id`].
+    pub id: [u32; LANES],
+    /// Room that Embree's layout has; 0.
+    pub flags: [u32; LANES],
+}
+
+impl RayPacket {
+    /// A packet none of whose lanes takes part.
+    pub const EMPTY: Self = Self {
+        org_x: [0.0; LANES],
+        org_y: [0.0; LANES],
+        org_z: [0.0; LANES],
+        tnear: [0.0; LANES],
+        dir_x: [0.0; LANES],
+        dir_y: [0.0; LANES],
+        dir_z: [1.0; LANES],
+        time: [0.0; LANES],
+        tfar: [f32::NEG_INFINITY; LANES],
+        mask: [0; LANES],
+        id: [0; LANES],
+        flags: [0; LANES],
+    };
+
+    /// Puts `ray` into `lane`.
+    #[inline]
+    pub fn set(&mut self, lane: usize, ray: &Ray) {
+        [self.org_x[lane], self.org_y[lane], self.org_z[lane]] = ray.origin.to_array();
+        [self.dir_x[lane], self.dir_y[lane], self.dir_z[lane]] = ray.direction.to_array();
+        self.tnear[lane] = ray.tnear;
+        self.tfar[lane] = ray.tfar;
+        self.time[lane] = ray.time;
+        self.mask[lane] = ray.mask;
+        self.id[lane] = ray.id;
+    }
+
+    /// The ray in `lane`.
+    #[inline]
+    pub fn get(&self, lane: usize) -> Ray {
+        Ray {
+            origin: Vec3::new(self.org_x[lane], self.org_y[lane], self.org_z[lane]),
+            direction: Vec3::new(self.dir_x[lane], self.dir_y[lane], self.dir_z[lane]),
+            tnear: self.tnear[lane],
+            tfar: self.tfar[lane],
+            time: self.time[lane],
+            mask: self.mask[lane],
+            id: self.id[lane],
+        }
+    }
+
+    /// Whether `lane` takes part.
+    #[inline]
+    pub fn is_active(&self, lane: usize) -> bool {
+        self.tnear[lane] <= self.tfar[lane]
+    }
+
+    /// Whether an occlusion query found something in the way of `lane`: it then has set its `tfar` to negative infinity.
+    #[inline]
+    pub fn is_occluded(&self, lane: usize) -> bool {
+        self.tfar[lane] == f32::NEG_INFINITY
+    }
+
+    /// Packs `rays`, eight at a time in their order, over what `packets` held; the last packet may be partial.
+    pub fn pack(rays: impl IntoIterator<Item = Ray>, packets: &mut Vec<Self>) {
+        packets.clear();
+        for (i, ray) in rays.into_iter().enumerate() {
+            if i % LANES == 0 {
+                packets.push(Self::EMPTY);
+            }
+            let last = packets.len() - 1;
+            packets[last].set(i % LANES, &ray);
+        }
+    }
+}
+
+/// What eight rays hit: ids only, and the backend's distance. Barycentrics and an exact distance are recomputed from the ray
+/// and the primitive by [`World::hit`](super::World::hit), so that backends and vector widths agree.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct HitPacket {
+    /// The geometry, or [`HitPacket::NONE`] for a miss or a lane that took no part.
+    pub geometry: [u32; LANES],
+    /// The primitive of that geometry.
+    pub primitive: [u32; LANES],
+    /// The instance it was seen through, or [`HitPacket::NONE`] for geometry of the top level.
+    pub instance: [u32; LANES],
+    /// Distance as the backend has it; `tfar` of the ray for a miss.
+    pub t: [f32; LANES],
+}
+
+impl HitPacket {
+    /// "Nothing" in each of the id arrays.
+    pub const NONE: u32 = u32::MAX;
+
+    /// Eight misses.
+    pub const EMPTY: Self = Self {
+        geometry: [Self::NONE; LANES],
+        primitive: [Self::NONE; LANES],
+        instance: [Self::NONE; LANES],
+        t: [f32::INFINITY; LANES],
+    };
+
+    /// Whether `lane` hit something.
+    #[inline]
+    pub fn is_hit(&self, lane: usize) -> bool {
+        self.geometry[lane] != Self::NONE
+    }
+}

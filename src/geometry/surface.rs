@@ -1,0 +1,251 @@
+//! From the ids of a hit to the surface there. Distance and position are recomputed from ray and primitive in double precision,
+//! so that they do not depend on the backend or on its vector width.
+
+use super::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
+use crate::math::{DAffine3, DVec3, Vec2, Vec3, gamma, offset_ray_origin};
+
+/// What a ray hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hit {
+    /// The geometry.
+    pub geometry: GeometryId,
+    /// The primitive of that geometry.
+    pub primitive: PrimitiveId,
+    /// The instance, unless the geometry is in world space.
+    pub instance: Option<InstanceId>,
+}
+
+impl HitPacket {
+    /// What `lane` hit; `None` for a miss.
+    #[inline]
+    pub fn get(&self, lane: usize) -> Option<Hit> {
+        self.is_hit(lane).then(|| Hit {
+            geometry: GeometryId(self.geometry[lane]),
+            primitive: PrimitiveId(self.primitive[lane]),
+            instance: (self.instance[lane] != Self::NONE).then_some(InstanceId(self.instance[lane])),
+        })
+    }
+}
+
+/// A point on a surface, with all that shading needs of the geometry there. World space.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceInteraction {
+    /// The point.
+    pub p: Vec3,
+    /// Per axis, how far the surface that a backend sees may be from `p`.
+    pub p_error: Vec3,
+    /// Distance along the ray, in units of its direction.
+    pub t: f32,
+    /// Geometric normal, unit length, on the side that the shape's orientation says; never turned towards the ray.
+    pub ng: Vec3,
+    /// Shading normal, unit length, in the hemisphere of `ng`.
+    pub ns: Vec3,
+    /// Derivative of the position by the first texture coordinate, not normalised; may be zero.
+    pub dpdu: Vec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Scene time of the ray.
+    pub time: f32,
+    /// What was hit.
+    pub hit: Hit,
+}
+
+impl SurfaceInteraction {
+    /// A ray from here in direction `w`.
+    #[inline]
+    pub fn spawn_ray(&self, w: Vec3) -> Ray {
+        Ray::new(offset_ray_origin(self.p, self.p_error, self.ng, w), w, self.time)
+    }
+
+    /// A ray from here that ends just before `to`, at distance 1 (a point with error `to_error` on a surface of normal `to_ng`,
+    /// zero vectors for a point in space).
+    #[inline]
+    pub fn spawn_ray_to(&self, to: Vec3, to_error: Vec3, to_ng: Vec3) -> Ray {
+        let origin = offset_ray_origin(self.p, self.p_error, self.ng, to - self.p);
+        let end = offset_ray_origin(to, to_error, to_ng, origin - to);
+        Ray {
+            tfar: 1.0 - SHADOW_EPSILON,
+            ..Ray::new(origin, end - origin, self.time)
+        }
+    }
+}
+
+/// How much of a shadow ray is left out at its far end, as in pbrt.
+const SHADOW_EPSILON: f32 = 1e-4;
+
+/// A surface point in the space of its group.
+struct LocalSurface {
+    p: DVec3,
+    p_error: DVec3,
+    t: f64,
+    ng: DVec3,
+    ns: DVec3,
+    dpdu: DVec3,
+    uv: Vec2,
+}
+
+impl World {
+    /// The surface where `ray` meets the primitive that a backend says it hits.
+    ///
+    /// The point is on the primitive even where the ray just misses it by another rounding than the backend's.
+    pub fn interaction(&self, ray: &Ray, hit: Hit) -> SurfaceInteraction {
+        let shape = &self.geometry(hit.geometry).shape;
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let Some(id) = hit.instance else {
+            return finish(
+                &local_surface(shape, hit.primitive, origin, direction, ray),
+                ray.time,
+                hit,
+            );
+        };
+        let motion = &self.instance(id).world_from_object;
+        let (world_from_object, object_from_world) = (motion.at(ray.time), motion.inverse_at(ray.time));
+        let origin = object_from_world.transform_point3(origin);
+        let direction = object_from_world.transform_vector3(direction);
+        let local = local_surface(shape, hit.primitive, origin, direction, ray);
+        finish(&to_world(&local, &world_from_object, &object_from_world), ray.time, hit)
+    }
+}
+
+fn local_surface(shape: &Shape, primitive: PrimitiveId, origin: DVec3, direction: DVec3, ray: &Ray) -> LocalSurface {
+    match shape {
+        Shape::Mesh(mesh) => triangle_surface(mesh, primitive.index(), origin, direction, ray.time),
+        Shape::Spheres(spheres) => sphere_surface(&spheres[primitive.index()], origin, direction, ray.tnear),
+    }
+}
+
+fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
+    let ng = local.ng.normalize().as_vec3();
+    let ns = local.ns.try_normalize().map_or(ng, DVec3::as_vec3);
+    SurfaceInteraction {
+        p: local.p.as_vec3(),
+        p_error: local.p_error.as_vec3(),
+        t: local.t as f32,
+        ng,
+        ns,
+        dpdu: local.dpdu.as_vec3(),
+        uv: local.uv,
+        time,
+        hit,
+    }
+}
+
+/// Positions, normals and error bounds through an instance's transform. A backend moves the ray to object space in single
+/// precision; the bound covers what that loses.
+fn to_world(local: &LocalSurface, world_from_object: &DAffine3, object_from_world: &DAffine3) -> LocalSurface {
+    let p = world_from_object.transform_point3(local.p);
+    let (forward, backward) = (world_from_object.matrix3.abs(), object_from_world.matrix3.abs());
+    let g = f64::from(gamma(4));
+    let object_error = local.p_error + g * (backward * p.abs() + object_from_world.translation.abs());
+    let world_error = g * (forward * local.p.abs() + world_from_object.translation.abs());
+    let normal = |n: DVec3| object_from_world.matrix3.transpose() * n;
+    LocalSurface {
+        p,
+        p_error: forward * object_error + world_error,
+        ng: normal(local.ng),
+        ns: normal(local.ns),
+        dpdu: world_from_object.transform_vector3(local.dpdu),
+        ..*local
+    }
+}
+
+fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
+    let vertices = mesh.triangle(triangle, time).map(Vec3::as_dvec3);
+    let [a, b, c] = vertices.map(|v| v - origin);
+    // Signed volumes of the direction and each edge, the barycentrics of Woop, Benthin and Wald (2013), kept inside.
+    let volumes = [
+        direction.dot(c.cross(b)),
+        direction.dot(a.cross(c)),
+        direction.dot(b.cross(a)),
+    ];
+    let sign = (volumes[0] + volumes[1] + volumes[2]).signum();
+    let clamped = volumes.map(|v| (v * sign).max(0.0));
+    let sum = clamped[0] + clamped[1] + clamped[2];
+    let w = if sum > 0.0 {
+        clamped.map(|v| v / sum)
+    } else {
+        [1.0 / 3.0; 3]
+    };
+    let p = vertices[0] * w[0] + vertices[1] * w[1] + vertices[2] * w[2];
+    let t = (p - origin).dot(direction) / direction.length_squared();
+
+    // A backend works in single precision with corners relative to the ray's origin.
+    let largest = vertices.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
+    let reach = vertices.iter().fold(DVec3::ZERO, |m, v| m.max((*v - p).abs()));
+    let p_error = f64::from(gamma(6)) * (largest + reach);
+
+    let mut ng = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
+    if mesh.has_flipped_normal() {
+        ng = -ng;
+    }
+    let corners = mesh.indices()[triangle].map(|v| v as usize);
+    let mut ns = ng;
+    if let Some(normals) = mesh.normals() {
+        let n: DVec3 = corners.iter().zip(w).map(|(&v, w)| normals[v].as_dvec3() * w).sum();
+        if n != DVec3::ZERO {
+            ns = n;
+            // With normals given they say which side is out, as in pbrt.
+            if ng.dot(ns) < 0.0 {
+                ng = -ng;
+            }
+        }
+    }
+    let uvs = mesh
+        .uvs()
+        .map_or([Vec2::ZERO, Vec2::X, Vec2::ONE], |uvs| corners.map(|v| uvs[v]));
+    let uv = uvs[0] * w[0] as f32 + uvs[1] * w[1] as f32 + uvs[2] * w[2] as f32;
+    LocalSurface {
+        p,
+        p_error,
+        t,
+        ng,
+        ns,
+        dpdu: triangle_dpdu(&vertices, &uvs),
+        uv,
+    }
+}
+
+/// Solves dp = dpdu du + dpdv dv along two edges; zero where the texture coordinates are degenerate.
+fn triangle_dpdu(p: &[DVec3; 3], uv: &[Vec2; 3]) -> DVec3 {
+    let (d1, d2) = ((uv[1] - uv[0]).as_dvec2(), (uv[2] - uv[0]).as_dvec2());
+    let determinant = d1.perp_dot(d2);
+    if determinant == 0.0 {
+        return DVec3::ZERO;
+    }
+    ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) / determinant
+}
+
+fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) -> LocalSurface {
+    let object = sphere.object_from_world();
+    let (o, d) = (object.transform_point3(origin), object.transform_vector3(direction));
+    let t = match sphere.intersect(origin, direction) {
+        Some(hits) if hits.enter >= f64::from(tnear) => hits.enter,
+        Some(hits) => hits.leave,
+        // A graze that the backend saw through an instance's rounded transform: the point of closest approach.
+        None => -o.dot(d) / d.length_squared(),
+    };
+    // Back onto the sphere, whatever t lost.
+    let unit = (o + d * t).normalize();
+    let world = sphere.world_from_object();
+    let p = world.transform_point3(unit * sphere.radius());
+    let outward = object.matrix3.transpose() * unit;
+    let ng = if sphere.has_flipped_normal() { -outward } else { outward };
+    let phi = unit.y.atan2(unit.x);
+    let phi = if phi < 0.0 { phi + std::f64::consts::TAU } else { phi };
+    let uv = Vec2::new(
+        (phi / std::f64::consts::TAU) as f32,
+        ((std::f64::consts::PI - unit.z.clamp(-1.0, 1.0).acos()) / std::f64::consts::PI) as f32,
+    );
+    let dpdu = world.transform_vector3(DVec3::new(-unit.y, unit.x, 0.0) * sphere.radius() * std::f64::consts::TAU);
+    // Only the rounding of p itself: the test that a backend makes is in double precision.
+    let p_error = p.abs() * f64::from(gamma(1));
+    LocalSurface {
+        p,
+        p_error,
+        t,
+        ng,
+        ns: ng,
+        dpdu,
+        uv,
+    }
+}

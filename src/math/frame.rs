@@ -1,0 +1,74 @@
+//! Orthonormal frames.
+
+use super::Vec3;
+
+/// A right-handed orthonormal basis; local z is the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Local x, in world space.
+    pub s: Vec3,
+    /// Local y, in world space.
+    pub t: Vec3,
+    /// Local z, in world space.
+    pub n: Vec3,
+}
+
+impl Frame {
+    /// Some frame with normal `n` (unit length): Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+    pub fn from_normal(n: Vec3) -> Self {
+        let sign = 1.0_f32.copysign(n.z);
+        let a = -1.0 / (sign + n.z);
+        let b = n.x * n.y * a;
+        Self {
+            s: Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+            t: Vec3::new(b, sign + n.y * n.y * a, -n.y),
+            n,
+        }
+    }
+
+    /// The frame with normal `n` (unit length) whose `s` is `tangent` made orthogonal to it; falls back to
+    /// [`Frame::from_normal`] where the two are parallel or the tangent is zero.
+    pub fn from_normal_tangent(n: Vec3, tangent: Vec3) -> Self {
+        match (tangent - n * n.dot(tangent)).try_normalize() {
+            Some(s) => Self { s, t: n.cross(s), n },
+            None => Self::from_normal(n),
+        }
+    }
+
+    /// World direction to local.
+    #[inline]
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
+    }
+
+    /// Local direction to world.
+    #[inline]
+    pub fn to_world(&self, v: Vec3) -> Vec3 {
+        self.s * v.x + self.t * v.y + self.n * v.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn frames_are_orthonormal_and_right_handed_in_every_direction() {
+        for i in 0..1000 {
+            let z = 1.0 - 2.0 * (i as f32 + 0.5) / 1000.0;
+            let (sin, cos) = (i as f32 * 2.4).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let n = Vec3::new(r * cos, r * sin, z).normalize();
+            for frame in [
+                Frame::from_normal(n),
+                Frame::from_normal_tangent(n, Vec3::new(0.3, -0.5, 0.2)),
+            ] {
+                assert_abs_diff_eq!(frame.s.cross(frame.t).dot(frame.n), 1.0, epsilon = 2e-6);
+                assert_abs_diff_eq!(frame.s.dot(frame.t), 0.0, epsilon = 1e-6);
+                let v = Vec3::new(0.2, 0.7, -0.4);
+                assert!((frame.to_world(frame.to_local(v)) - v).length() < 3e-6);
+            }
+        }
+    }
+}
