@@ -1,0 +1,2 @@
+#include <rtcore_config.h>
+embree_sys_version RTC_VERSION_MAJOR RTC_VERSION_MINOR RTC_VERSION_PATCH
