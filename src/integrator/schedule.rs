@@ -1,5 +1,6 @@
 //! Which thread renders what: tiles times ranges of samples, in any order, as the sums of a film are exact.
 
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -29,7 +30,7 @@ const SAMPLES_PER_UNIT: u32 = 16;
 /// One tile and a range of samples.
 struct Unit<'a> {
     tile: &'a Mutex<TileSums>,
-    samples: std::ops::Range<u32>,
+    samples: Range<u32>,
 }
 
 /// Renders all samples of all tiles on the threads of the current rayon pool.
@@ -40,18 +41,18 @@ pub(super) fn render_tiles(
     path: &PathIntegrator,
     progress: &dyn Progress,
 ) -> RenderStats {
-    let spp = view.sampler.samples_per_pixel();
-    let units: Vec<Unit> = (0..spp)
+    let Range { start, end } = view.samples;
+    let units: Vec<Unit> = (start..end)
         .step_by(SAMPLES_PER_UNIT as usize)
         .flat_map(|first| {
-            let samples = first..(first + SAMPLES_PER_UNIT).min(spp);
+            let samples = first..(first + SAMPLES_PER_UNIT).min(end);
             film.tiles().iter().map(move |tile| Unit {
                 tile,
                 samples: samples.clone(),
             })
         })
         .collect();
-    let total = film.crop().area() * u64::from(spp);
+    let total = film.crop().area() * u64::from(end - start);
     let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
     let per_thread = rayon::broadcast(|_| {
         let mut wave = Wave::new(scene, view);

@@ -1,5 +1,6 @@
 //! One picture of a scene: camera, film, filter, sampler.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use super::shapes::animated;
@@ -27,6 +28,8 @@ pub struct View {
     pub sensor: Sensor,
     /// The source of random numbers, with the number of samples a pixel.
     pub sampler: Sampler,
+    /// Which of the samples of each pixel are rendered; within the number that the sampler plans for.
+    pub samples: Range<u32>,
     /// The output that the scene names.
     pub filename: Option<PathBuf>,
 }
@@ -42,6 +45,8 @@ pub struct ViewOverrides {
     pub spp: Option<u32>,
     /// Kind of sampler.
     pub sampler: Option<SamplerKind>,
+    /// Only this sample of each pixel.
+    pub sample: Option<u32>,
     /// Seed of all random numbers.
     pub seed: u64,
 }
@@ -77,6 +82,10 @@ impl View {
             desc::SamplerKind::Independent => SamplerKind::Independent,
             desc::SamplerKind::Sobol => SamplerKind::Sobol,
         });
+        let spp = overrides.spp.unwrap_or(view.sampler.pixel_samples);
+        if let Some(sample) = overrides.sample.filter(|&sample| sample >= spp) {
+            return Err(Error::Usage(format!("there is no sample {sample}: a pixel has {spp}, counted from 0")));
+        }
         Ok(Self {
             name: view.name.clone(),
             camera: Camera::new(&camera_spec(desc, view, resolution).map_err(problem)?),
