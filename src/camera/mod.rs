@@ -164,12 +164,19 @@ mod tests {
     }
 
     fn sample(x: f32, y: f32) -> CameraSample {
-        CameraSample { film: Vec2::new(x, y), lens: Vec2::new(0.9, 0.3), time: 0.5 }
+        CameraSample {
+            film: Vec2::new(x, y),
+            lens: Vec2::new(0.9, 0.3),
+            time: 0.5,
+        }
     }
 
     #[test]
     fn fov_is_the_angle_of_the_shorter_side() {
-        let camera = Camera::new(&spec(Projection::Perspective { fov: 90.0, near_clip: 0.0 }));
+        let camera = Camera::new(&spec(Projection::Perspective {
+            fov: 90.0,
+            near_clip: 0.0,
+        }));
         let top = camera.sample_ray(&sample(100.0, 0.0)).direction;
         assert_relative_eq!(top.y / top.z, 1.0, epsilon = 1e-6);
         let left = camera.sample_ray(&sample(0.0, 50.0));
@@ -179,9 +186,18 @@ mod tests {
 
     #[test]
     fn the_lens_keeps_the_plane_of_focus_sharp() {
-        for projection in [Projection::Perspective { fov: 40.0, near_clip: 0.0 }, Projection::Orthographic] {
+        for projection in [
+            Projection::Perspective {
+                fov: 40.0,
+                near_clip: 0.0,
+            },
+            Projection::Orthographic,
+        ] {
             let pinhole = Camera::new(&spec(projection)).sample_ray(&sample(30.0, 80.0));
-            let lens = CameraSpec { lens_radius: 0.5, ..spec(projection) };
+            let lens = CameraSpec {
+                lens_radius: 0.5,
+                ..spec(projection)
+            };
             let ray = Camera::new(&lens).sample_ray(&sample(30.0, 80.0));
             assert!((ray.origin - pinhole.origin).length() > 0.1);
             let at_focus = |ray: &Ray| ray.origin + ray.direction * ((5.0 - ray.origin.z) / ray.direction.z);
@@ -191,7 +207,10 @@ mod tests {
 
     #[test]
     fn rays_start_on_the_near_plane() {
-        let camera = Camera::new(&spec(Projection::Perspective { fov: 60.0, near_clip: 3.0 }));
+        let camera = Camera::new(&spec(Projection::Perspective {
+            fov: 60.0,
+            near_clip: 3.0,
+        }));
         let ray = camera.sample_ray(&sample(10.0, 20.0));
         assert_relative_eq!(ray.origin.z, 3.0, epsilon = 1e-6);
         assert!(ray.origin.normalize().cross(ray.direction).length() < 1e-6);

@@ -103,7 +103,10 @@ impl PixelFilter {
     /// With a support of `radius` pixels in x and y (positive). `None` if the filter is zero everywhere or integrates to zero.
     pub fn new(kind: FilterKind, radius: [f64; 2]) -> Option<Self> {
         let [x, y] = radius;
-        Some(Self { kind, axes: [FilterAxis::new(kind, x)?, FilterAxis::new(kind, y)?] })
+        Some(Self {
+            kind,
+            axes: [FilterAxis::new(kind, x)?, FilterAxis::new(kind, y)?],
+        })
     }
 
     /// Half the width of the support, in pixels.
@@ -116,7 +119,10 @@ impl PixelFilter {
     pub fn sample(&self, u: Vec2) -> FilterSample {
         let (x, wx) = self.axes[0].sample(self.kind, u.x);
         let (y, wy) = self.axes[1].sample(self.kind, u.y);
-        FilterSample { offset: Vec2::new(x, y), weight: wx * wy }
+        FilterSample {
+            offset: Vec2::new(x, y),
+            weight: wx * wy,
+        }
     }
 }
 
@@ -145,7 +151,11 @@ impl FilterAxis {
                 Some(PiecewiseConstant1D::new(&values, -radius as f32, radius as f32)?)
             }
         };
-        Some(Self { radius, integral, table })
+        Some(Self {
+            radius,
+            integral,
+            table,
+        })
     }
 
     /// An offset, and the filter's value over its integral and the density.
@@ -177,7 +187,10 @@ mod tests {
         FilterKind::Box,
         FilterKind::Triangle,
         FilterKind::Gaussian { sigma: 0.5 },
-        FilterKind::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 },
+        FilterKind::Mitchell {
+            b: 1.0 / 3.0,
+            c: 1.0 / 3.0,
+        },
         FilterKind::LanczosSinc { tau: 3.0 },
         FilterKind::BlackmanHarris,
     ];
@@ -192,7 +205,10 @@ mod tests {
             let (mut estimate, mut weights) = ([0.0_f64; 2], 0.0_f64);
             for i in 0..count {
                 let sample = filter.sample(Vec2::new((i as f32 + 0.5) / count as f32, 0.37));
-                let (wx, x) = (f64::from(filter.axes[0].sample(kind, (i as f32 + 0.5) / count as f32).1), f64::from(sample.offset.x));
+                let (wx, x) = (
+                    f64::from(filter.axes[0].sample(kind, (i as f32 + 0.5) / count as f32).1),
+                    f64::from(sample.offset.x),
+                );
                 weights += wx;
                 estimate[0] += wx * x * x;
                 estimate[1] += wx * x.powi(4);
@@ -206,17 +222,27 @@ mod tests {
                 moments[0] += f * x * x;
                 moments[1] += f * x.powi(4);
             }
-            assert!((weights / f64::from(count) - 1.0).abs() < 1e-3, "{kind:?}: mean weight {}", weights / f64::from(count));
+            assert!(
+                (weights / f64::from(count) - 1.0).abs() < 1e-3,
+                "{kind:?}: mean weight {}",
+                weights / f64::from(count)
+            );
             for i in 0..2 {
                 let (got, expected) = (estimate[i] / f64::from(count), moments[i] / integral);
-                assert!((got - expected).abs() < 2e-3, "{kind:?}: moment {i} is {got}, expected {expected}");
+                assert!(
+                    (got - expected).abs() < 2e-3,
+                    "{kind:?}: moment {i} is {got}, expected {expected}"
+                );
             }
         }
     }
 
     #[test]
     fn mitchell_is_continuous_and_ends_at_zero() {
-        let kind = FilterKind::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 };
+        let kind = FilterKind::Mitchell {
+            b: 1.0 / 3.0,
+            c: 1.0 / 3.0,
+        };
         assert!((kind.evaluate(1.0 - 1e-9, 2.0) - kind.evaluate(1.0 + 1e-9, 2.0)).abs() < 1e-8);
         assert!(kind.evaluate(2.0, 2.0).abs() < 1e-12);
         assert!(kind.evaluate(1.5, 2.0) < 0.0);

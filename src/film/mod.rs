@@ -6,4 +6,5 @@ mod sums;
 
 pub use filter::{FilterKind, FilterSample, PixelFilter};
 pub use sensor::Sensor;
+pub(crate) use sums::lock;
 pub use sums::{Film, PixelRect, TILE_SIZE, TileSums};

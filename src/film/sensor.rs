@@ -6,32 +6,35 @@ use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths, cie};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     mode: ColorMode,
+    /// Linear sRGB of XYZ, by rows, the imaging ratio included.
+    rgb_from_xyz: [[f32; 3]; 3],
     imaging_ratio: f32,
 }
 
 impl Sensor {
     /// A sensor for spectral or rgb transport.
     pub fn new(mode: ColorMode, imaging_ratio: f64) -> Self {
-        Self { mode, imaging_ratio: imaging_ratio as f32 }
+        let imaging_ratio = imaging_ratio as f32;
+        let rgb_from_xyz = cie::srgb_from_xyz_rows().map(|row| row.map(|c| c * imaging_ratio));
+        Self {
+            mode,
+            rgb_from_xyz,
+            imaging_ratio,
+        }
     }
 
     /// Linear sRGB of the spectral radiance `l` of one sample: an estimate of its integral against the colour matching functions.
     /// Negative where the colour lies outside sRGB.
     #[inline]
     pub fn to_rgb(&self, l: SampledSpectrum, lambda: &Wavelengths) -> [f32; 3] {
-        let rgb = match self.mode {
-            ColorMode::Rgb => [l.0[0], l.0[1], l.0[2]],
+        match self.mode {
+            ColorMode::Rgb => [l.0[0], l.0[1], l.0[2]].map(|c| c * self.imaging_ratio),
             ColorMode::Spectral => {
-                let weighted = l.safe_div(lambda.pdf());
-                let mut xyz = [0.0_f32; 3];
-                for (lambda, value) in lambda.lambda.into_iter().zip(weighted.0) {
-                    for (sum, response) in xyz.iter_mut().zip(cie::cmf(lambda)) {
-                        *sum += response * value;
-                    }
-                }
-                cie::xyz_to_srgb(xyz.map(|sum| sum * 0.25))
+                let l = l.safe_div(lambda.pdf());
+                let xyz = cie::xyz_bar(lambda).map(|bar| (bar * l).mean());
+                self.rgb_from_xyz
+                    .map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
             }
-        };
-        rgb.map(|c| c * self.imaging_ratio)
+        }
     }
 }

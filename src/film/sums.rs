@@ -22,7 +22,12 @@ pub struct PixelRect {
 impl PixelRect {
     /// All pixels of a picture.
     pub fn full(resolution: [u32; 2]) -> Self {
-        Self { x0: 0, y0: 0, x1: resolution[0], y1: resolution[1] }
+        Self {
+            x0: 0,
+            y0: 0,
+            x1: resolution[0],
+            y1: resolution[1],
+        }
     }
 
     /// Columns.
@@ -104,7 +109,11 @@ impl TileSums {
         let w = f64::from(weight);
         sums.weight += quantize(w).unwrap_or(0);
         let quantized = rgb.and_then(|[r, g, b]| {
-            Some([quantize(w * f64::from(r))?, quantize(w * f64::from(g))?, quantize(w * f64::from(b))?])
+            Some([
+                quantize(w * f64::from(r))?,
+                quantize(w * f64::from(g))?,
+                quantize(w * f64::from(b))?,
+            ])
         });
         match quantized {
             Some(rgb) => {
@@ -140,14 +149,27 @@ impl Film {
         for ty in crop.y0 / TILE_SIZE..crop.y1.div_ceil(TILE_SIZE) {
             for tx in crop.x0 / TILE_SIZE..crop.x1.div_ceil(TILE_SIZE) {
                 let (x0, y0) = (tx * TILE_SIZE, ty * TILE_SIZE);
-                let tile = PixelRect { x0, y0, x1: x0 + TILE_SIZE, y1: y0 + TILE_SIZE };
+                let tile = PixelRect {
+                    x0,
+                    y0,
+                    x1: x0 + TILE_SIZE,
+                    y1: y0 + TILE_SIZE,
+                };
                 if let Some(rect) = tile.intersection(&crop) {
                     let pixels = vec![PixelSums::default(); rect.area() as usize];
-                    tiles.push(Mutex::new(TileSums { rect, pixels, dropped: 0 }));
+                    tiles.push(Mutex::new(TileSums {
+                        rect,
+                        pixels,
+                        dropped: 0,
+                    }));
                 }
             }
         }
-        Self { resolution, crop, tiles }
+        Self {
+            resolution,
+            crop,
+            tiles,
+        }
     }
 
     /// Width and height of the whole picture.
@@ -205,21 +227,47 @@ mod tests {
     use super::*;
 
     fn film() -> Film {
-        Film::new([100, 70], PixelRect { x0: 60, y0: 10, x1: 90, y1: 66 })
+        Film::new(
+            [100, 70],
+            PixelRect {
+                x0: 60,
+                y0: 10,
+                x1: 90,
+                y1: 66,
+            },
+        )
     }
 
     #[test]
     fn tiles_lie_on_the_grid_of_the_whole_picture() {
         let rects: Vec<_> = film().tiles().iter().map(|tile| lock(tile).rect()).collect();
         assert_eq!(rects.len(), 4);
-        assert_eq!(rects[0], PixelRect { x0: 60, y0: 10, x1: 64, y1: 64 });
-        assert_eq!(rects[3], PixelRect { x0: 64, y0: 64, x1: 90, y1: 66 });
+        assert_eq!(
+            rects[0],
+            PixelRect {
+                x0: 60,
+                y0: 10,
+                x1: 64,
+                y1: 64
+            }
+        );
+        assert_eq!(
+            rects[3],
+            PixelRect {
+                x0: 64,
+                y0: 64,
+                x1: 90,
+                y1: 66
+            }
+        );
     }
 
     #[test]
     fn sums_do_not_depend_on_their_order() {
         // Values that floating-point addition cannot reorder: 1e8 + 1e-8 - 1e8.
-        let values: Vec<f32> = (0..1000).map(|i| (if i % 3 == 0 { 1e8 } else { 1e-8 }) * (1.0 + i as f32)).collect();
+        let values: Vec<f32> = (0..1000)
+            .map(|i| (if i % 3 == 0 { 1e8 } else { 1e-8 }) * (1.0 + i as f32))
+            .collect();
         let render = |order: &mut dyn Iterator<Item = &f32>| {
             let film = film();
             for &v in order {

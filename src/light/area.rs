@@ -3,8 +3,8 @@
 use std::f32::consts::PI;
 
 use super::{LightDensity, LightEnd, LightSample};
-use crate::math::{DVec3, Vec2, Vec3, gamma};
 use crate::math::Frame;
+use crate::math::{DVec3, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
@@ -50,7 +50,21 @@ impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
         let area = shape.area();
-        (area > 0.0).then_some(Self { shape, area, radiance, two_sided })
+        (area > 0.0).then_some(Self {
+            shape,
+            area,
+            radiance,
+            two_sided,
+        })
+    }
+
+    /// This light, `factor` times as bright.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        Self {
+            radiance: self.radiance.scaled(factor),
+            ..self
+        }
     }
 
     /// Its surface area, one side.
@@ -58,10 +72,19 @@ impl AreaLight {
         self.area
     }
 
+    /// How many sides emit.
+    pub fn sides(&self) -> f32 {
+        if self.two_sided { 2.0 } else { 1.0 }
+    }
+
     /// Radiance emitted in direction `w` where the geometric normal is `ng`.
     #[inline]
     pub fn le(&self, ng: Vec3, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
-        if self.two_sided || ng.dot(w) > 0.0 { self.radiance.sample(lambda) } else { SampledSpectrum::ZERO }
+        if self.two_sided || ng.dot(w) > 0.0 {
+            self.radiance.sample(lambda)
+        } else {
+            SampledSpectrum::ZERO
+        }
     }
 
     /// Density, by solid angle at `from`, of the point `p` of the light, where its geometric normal is `ng`.
@@ -86,16 +109,18 @@ impl AreaLight {
     pub(super) fn sample_li(&self, from: Vec3, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
         let sample = match &self.shape {
             EmitterShape::Triangle { vertices, ng } => self.sample_triangle(vertices, *ng, from, u),
-            EmitterShape::Sphere { center, radius, inward } => {
-                self.sample_sphere(*center, *radius, *inward, from, u)
-            }
+            EmitterShape::Sphere { center, radius, inward } => self.sample_sphere(*center, *radius, *inward, from, u),
         };
         let wi = (sample.p - from).try_normalize()?;
         let li = self.le(sample.ng, -wi, lambda);
         (sample.pdf.0 > 0.0 && sample.pdf.0.is_finite() && !li.is_black()).then_some(LightSample {
             li,
             wi,
-            end: LightEnd::Point { p: sample.p, p_error: sample.p_error, ng: sample.ng },
+            end: LightEnd::Point {
+                p: sample.p,
+                p_error: sample.p_error,
+                ng: sample.ng,
+            },
             density: LightDensity::Continuous(sample.pdf),
         })
     }
@@ -104,7 +129,12 @@ impl AreaLight {
         let b = warp::sample_uniform_triangle(u);
         let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
         let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-        SurfaceSample { p, p_error: gamma(6) * largest, ng, pdf: self.uniform_pdf(from, p, ng) }
+        SurfaceSample {
+            p,
+            p_error: gamma(6) * largest,
+            ng,
+            pdf: self.uniform_pdf(from, p, ng),
+        }
     }
 
     /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside.
@@ -120,19 +150,25 @@ impl AreaLight {
             Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
             None => self.uniform_pdf(from, p, ng),
         };
-        SurfaceSample { p, p_error: p.abs() * gamma(1), ng, pdf }
+        SurfaceSample {
+            p,
+            p_error: p.abs() * gamma(1),
+            ng,
+            pdf,
+        }
     }
 
     pub(super) fn power(&self) -> f32 {
-        let sides = if self.two_sided { 2.0 } else { 1.0 };
-        sides * PI * self.area * self.radiance.photometric_luminance()
+        self.sides() * PI * self.area * self.radiance.photometric_luminance()
     }
 }
 
 impl EmitterShape {
     fn area(&self) -> f32 {
         match self {
-            Self::Triangle { vertices: [a, b, c], .. } => 0.5 * (*b - *a).cross(*c - *a).length(),
+            Self::Triangle {
+                vertices: [a, b, c], ..
+            } => 0.5 * (*b - *a).cross(*c - *a).length(),
             Self::Sphere { radius, .. } => (4.0 * std::f64::consts::PI * radius * radius) as f32,
         }
     }
@@ -158,7 +194,11 @@ impl Cone {
         }
         let sin = radius / distance;
         let one_minus_cos = sin * sin / (1.0 + (1.0 - sin * sin).sqrt());
-        Some(Self { axis: to_center / distance, distance, one_minus_cos: one_minus_cos as f32 })
+        Some(Self {
+            axis: to_center / distance,
+            distance,
+            one_minus_cos: one_minus_cos as f32,
+        })
     }
 
     /// The direction from the sphere's centre to the point where it is first met along `w`, a direction in the cone's local frame.

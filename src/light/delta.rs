@@ -25,7 +25,11 @@ impl PointLight {
         (distance_squared > 0.0).then(|| LightSample {
             li: self.intensity.sample(lambda) * (1.0 / distance_squared),
             wi: to_light / distance_squared.sqrt(),
-            end: LightEnd::Point { p: self.position, p_error: Vec3::ZERO, ng: Vec3::ZERO },
+            end: LightEnd::Point {
+                p: self.position,
+                p_error: Vec3::ZERO,
+                ng: Vec3::ZERO,
+            },
             density: LightDensity::Delta,
         })
     }
@@ -51,7 +55,12 @@ impl DistantLight {
 
     pub(super) fn sample_li(&self, lambda: &Wavelengths) -> LightSample {
         let li: SampledSpectrum = self.irradiance.sample(lambda);
-        LightSample { li, wi: self.towards, end: LightEnd::Infinity, density: LightDensity::Delta }
+        LightSample {
+            li,
+            wi: self.towards,
+            end: LightEnd::Infinity,
+            density: LightDensity::Delta,
+        }
     }
 
     pub(super) fn power(&self, bounds: &Bounds3) -> f32 {

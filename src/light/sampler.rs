@@ -23,20 +23,27 @@ pub struct SampledLight {
 impl LightSampler {
     /// All lights alike.
     pub fn uniform(lights: &[Light]) -> Self {
-        Self { table: AliasTable::new(&vec![1.0; lights.len()]) }
+        Self {
+            table: AliasTable::new(&vec![1.0; lights.len()]),
+        }
     }
 
     /// In proportion to [`Light::power`].
     pub fn power(lights: &[Light], scene_bounds: &Bounds3) -> Self {
         let weights: Vec<f32> = lights.iter().map(|light| light.power(scene_bounds)).collect();
-        Self { table: AliasTable::new(&weights) }
+        Self {
+            table: AliasTable::new(&weights),
+        }
     }
 
     /// Chooses by `u` in [0, 1); `None` if nothing emits.
     #[inline]
     pub fn sample(&self, u: f32) -> Option<SampledLight> {
         let (index, pmf, _) = self.table.as_ref()?.sample(u);
-        Some(SampledLight { light: LightId(index as u32), pmf })
+        Some(SampledLight {
+            light: LightId(index as u32),
+            pmf,
+        })
     }
 
     /// The probability of `light`.

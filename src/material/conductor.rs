@@ -25,20 +25,30 @@ impl Conductor {
     }
 
     fn fresnel(&self, cos: f32) -> SampledSpectrum {
-        SampledSpectrum(std::array::from_fn(|i| fresnel_complex(cos, self.eta.0[i], self.k.0[i])))
+        SampledSpectrum(std::array::from_fn(|i| {
+            fresnel_complex(cos, self.eta.0[i], self.k.0[i])
+        }))
     }
 
     /// See [`Bsdf::f`](super::Bsdf::f): F D G / (4 cos cos) (Torrance and Sparrow 1967).
     pub fn f(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
-        let Some(ggx) = &self.roughness else { return SampledSpectrum::ZERO };
-        let Some(m) = half_vector(wo, wi) else { return SampledSpectrum::ZERO };
+        let Some(ggx) = &self.roughness else {
+            return SampledSpectrum::ZERO;
+        };
+        let Some(m) = half_vector(wo, wi) else {
+            return SampledSpectrum::ZERO;
+        };
         self.fresnel(wo.dot(m).abs()) * (ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs())
     }
 
     /// See [`Bsdf::pdf`](super::Bsdf::pdf).
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> SolidAnglePdf {
-        let Some(ggx) = &self.roughness else { return SolidAnglePdf(0.0) };
-        let Some(m) = half_vector(wo, wi) else { return SolidAnglePdf(0.0) };
+        let Some(ggx) = &self.roughness else {
+            return SolidAnglePdf(0.0);
+        };
+        let Some(m) = half_vector(wo, wi) else {
+            return SolidAnglePdf(0.0);
+        };
         SolidAnglePdf(reflection_pdf(ggx, wo, m))
     }
 

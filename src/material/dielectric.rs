@@ -18,7 +18,10 @@ impl Dielectric {
     /// Of relative index `eta` (positive); smooth without `roughness`. At an index of 1 there is no boundary and light goes
     /// straight through, however rough.
     pub fn new(eta: f32, roughness: Option<Ggx>) -> Self {
-        Self { eta, roughness: if eta == 1.0 { None } else { roughness } }
+        Self {
+            eta,
+            roughness: if eta == 1.0 { None } else { roughness },
+        }
     }
 
     /// Whether it is smooth.
@@ -33,30 +36,39 @@ impl Dielectric {
 
     /// See [`Bsdf::f`](super::Bsdf::f).
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> SampledSpectrum {
-        let Some(ggx) = &self.roughness else { return SampledSpectrum::ZERO };
+        let Some(ggx) = &self.roughness else {
+            return SampledSpectrum::ZERO;
+        };
         let value = if wo.z * wi.z > 0.0 {
             half_vector(wo, wi).map_or(0.0, |m| self.reflection(ggx, wo, wi, m))
         } else {
-            self.refraction_normal(wo, wi).map_or(0.0, |m| self.refraction(ggx, wo, wi, m, mode))
+            self.refraction_normal(wo, wi)
+                .map_or(0.0, |m| self.refraction(ggx, wo, wi, m, mode))
         };
         SampledSpectrum::splat(value)
     }
 
     /// See [`Bsdf::pdf`](super::Bsdf::pdf).
     pub fn pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> SolidAnglePdf {
-        let Some(ggx) = &self.roughness else { return SolidAnglePdf(0.0) };
+        let Some(ggx) = &self.roughness else {
+            return SolidAnglePdf(0.0);
+        };
         let pdf = if wo.z * wi.z > 0.0 {
-            half_vector(wo, wi)
-                .map_or(0.0, |m| reflection_pdf(ggx, wo, m) * fresnel_dielectric(wo.dot(m), self.eta))
+            half_vector(wo, wi).map_or(0.0, |m| {
+                reflection_pdf(ggx, wo, m) * fresnel_dielectric(wo.dot(m), self.eta)
+            })
         } else {
-            self.refraction_normal(wo, wi).map_or(0.0, |m| self.refraction_pdf(ggx, wo, wi, m))
+            self.refraction_normal(wo, wi)
+                .map_or(0.0, |m| self.refraction_pdf(ggx, wo, wi, m))
         };
         SolidAnglePdf(pdf)
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
     pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<LocalSample> {
-        let Some(ggx) = &self.roughness else { return self.sample_smooth(wo, u_lobe, mode) };
+        let Some(ggx) = &self.roughness else {
+            return self.sample_smooth(wo, u_lobe, mode);
+        };
         let m = ggx.sample_visible_normal(wo, u);
         let reflectance = fresnel_dielectric(wo.dot(m), self.eta);
         if u_lobe < reflectance {
@@ -121,7 +133,10 @@ impl Dielectric {
         let eta = self.eta_across(wo);
         let transmittance = 1.0 - fresnel_dielectric(wo.dot(m), self.eta);
         let denominator = (wi.dot(m) + wo.dot(m) / eta).powi(2);
-        transmittance * ggx.d(m) * ggx.g(wo, wi) * (wi.dot(m) * wo.dot(m) / (wi.z * wo.z * denominator)).abs()
+        transmittance
+            * ggx.d(m)
+            * ggx.g(wo, wi)
+            * (wi.dot(m) * wo.dot(m) / (wi.z * wo.z * denominator)).abs()
             * radiance_scale(eta, mode)
     }
 

@@ -22,7 +22,11 @@ impl Diffuse {
     /// See [`Bsdf::f`](super::Bsdf::f).
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
-        if wo.z * wi.z > 0.0 { self.albedo * FRAC_1_PI } else { SampledSpectrum::ZERO }
+        if wo.z * wi.z > 0.0 {
+            self.albedo * FRAC_1_PI
+        } else {
+            SampledSpectrum::ZERO
+        }
     }
 
     /// See [`Bsdf::pdf`](super::Bsdf::pdf).

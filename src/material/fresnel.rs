@@ -43,7 +43,11 @@ pub fn fresnel_complex(cos_i: f32, eta: f32, k: f32) -> f32 {
 #[inline]
 pub fn refract(wi: Vec3, n: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let cos_i = n.dot(wi);
-    let (cos_i, n, eta) = if cos_i < 0.0 { (-cos_i, -n, 1.0 / eta) } else { (cos_i, n, eta) };
+    let (cos_i, n, eta) = if cos_i < 0.0 {
+        (-cos_i, -n, 1.0 / eta)
+    } else {
+        (cos_i, n, eta)
+    };
     let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
     if sin2_t >= 1.0 {
         return None;
@@ -63,7 +67,11 @@ mod tests {
         assert_relative_eq!(fresnel_dielectric(-1.0, 1.5), 0.04, epsilon = 1e-6);
         // Brewster's angle: only perpendicular light is reflected, ((1 - n²) / (1 + n²))² / 2.
         let brewster = 1.5_f32.atan().cos();
-        assert_relative_eq!(fresnel_dielectric(brewster, 1.5), 0.5 * (1.25_f32 / 3.25).powi(2), epsilon = 1e-6);
+        assert_relative_eq!(
+            fresnel_dielectric(brewster, 1.5),
+            0.5 * (1.25_f32 / 3.25).powi(2),
+            epsilon = 1e-6
+        );
         assert_eq!(fresnel_dielectric(-0.7, 1.5), 1.0);
     }
 
@@ -71,7 +79,11 @@ mod tests {
     fn a_conductor_without_absorption_is_a_dielectric() {
         for i in 1..=20 {
             let cos = i as f32 / 20.0;
-            assert_relative_eq!(fresnel_complex(cos, 1.5, 0.0), fresnel_dielectric(cos, 1.5), epsilon = 2e-6);
+            assert_relative_eq!(
+                fresnel_complex(cos, 1.5, 0.0),
+                fresnel_dielectric(cos, 1.5),
+                epsilon = 2e-6
+            );
         }
         // Gold at 550 nm, normal incidence: ((n - 1)² + k²) / ((n + 1)² + k²).
         let (n, k) = (0.43_f32, 2.46_f32);

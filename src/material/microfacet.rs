@@ -22,7 +22,10 @@ impl Ggx {
         if alpha_x.max(alpha_y) < Self::SMOOTH {
             return None;
         }
-        Some(Self { alpha_x: alpha_x.max(Self::LEAST_ALPHA), alpha_y: alpha_y.max(Self::LEAST_ALPHA) })
+        Some(Self {
+            alpha_x: alpha_x.max(Self::LEAST_ALPHA),
+            alpha_y: alpha_y.max(Self::LEAST_ALPHA),
+        })
     }
 
     /// The slope for pbrt-v4's perceptual roughness.
@@ -83,7 +86,9 @@ impl Ggx {
         let z = (1.0 - u.y) * (1.0 + wh.z) - wh.z;
         let r = (1.0 - z * z).max(0.0).sqrt();
         let m = Vec3::new(r * cos_phi, r * sin_phi, z) + wh;
-        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
+        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0))
+            .try_normalize()
+            .unwrap_or(Vec3::Z)
     }
 }
 
@@ -126,9 +131,20 @@ mod tests {
     fn visible_normals_integrate_to_one_from_every_direction() {
         for (ax, ay) in [(0.3, 0.3), (0.6, 0.2)] {
             let ggx = Ggx::new(ax, ay).unwrap();
-            for w in [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, -0.95, 0.312), Vec3::new(0.7, 0.7, 0.14)] {
+            for w in [
+                Vec3::Z,
+                Vec3::new(0.6, 0.0, 0.8),
+                Vec3::new(0.0, -0.95, 0.312),
+                Vec3::new(0.7, 0.7, 0.14),
+            ] {
                 let w = w.normalize();
-                let sum = integrate(|m| if w.dot(m) > 0.0 { ggx.visible_normal_pdf(w, m) } else { 0.0 });
+                let sum = integrate(|m| {
+                    if w.dot(m) > 0.0 {
+                        ggx.visible_normal_pdf(w, m)
+                    } else {
+                        0.0
+                    }
+                });
                 assert!((sum - 1.0).abs() < 2e-3, "alpha {ax} {ay}, w {w}: {sum}");
             }
         }

@@ -29,9 +29,13 @@ impl Frame {
     /// The frame with normal `n` (unit length) whose `s` is `tangent` made orthogonal to it; falls back to
     /// [`Frame::from_normal`] where the two are parallel or the tangent is zero.
     pub fn from_normal_tangent(n: Vec3, tangent: Vec3) -> Self {
-        let Some(s) = (tangent - n * n.dot(tangent)).try_normalize() else { return Self::from_normal(n) };
+        let Some(s) = (tangent - n * n.dot(tangent)).try_normalize() else {
+            return Self::from_normal(n);
+        };
         // Once more: where the tangent is nearly parallel to the normal, the first difference is mostly rounding.
-        let Some(s) = (s - n * n.dot(s)).try_normalize() else { return Self::from_normal(n) };
+        let Some(s) = (s - n * n.dot(s)).try_normalize() else {
+            return Self::from_normal(n);
+        };
         Self { s, t: n.cross(s), n }
     }
 

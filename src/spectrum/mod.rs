@@ -20,9 +20,10 @@ pub use sampled::{LANES, SampledSpectrum};
 pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};
 
 /// What the four lanes of a path are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMode {
     /// Four wavelengths, drawn anew for each path.
+    #[default]
     Spectral,
     /// Linear sRGB and a zero.
     Rgb,
