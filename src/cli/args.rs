@@ -10,7 +10,12 @@ use crate::sampling::SamplerKind;
 use crate::spectrum::ColorMode;
 
 /// What `--version` says: the program, and the Embree that it was built with.
-const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (Embree: ", env!("LUCERNA_EMBREE_VERSION"), ")");
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (Embree: ",
+    env!("LUCERNA_EMBREE_VERSION"),
+    ")"
+);
 
 /// A physically based renderer: pbrt-v4 scenes in, EXR or PNG pictures out.
 ///
@@ -250,12 +255,18 @@ fn parse_backend(text: &str) -> Result<Backend, String> {
 fn parse_max_depth(text: &str) -> Result<MaxDepth, String> {
     match text {
         "unlimited" => Ok(MaxDepth(None)),
-        _ => text.parse().map(|depth| MaxDepth(Some(depth))).map_err(|_| "expected a number or `unlimited`".to_owned()),
+        _ => text
+            .parse()
+            .map(|depth| MaxDepth(Some(depth)))
+            .map_err(|_| "expected a number or `unlimited`".to_owned()),
     }
 }
 
 fn parse_finite(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_finite()).ok_or_else(|| "expected a number".to_owned())
+    text.parse()
+        .ok()
+        .filter(|x: &f32| x.is_finite())
+        .ok_or_else(|| "expected a number".to_owned())
 }
 
 /// The largest picture: 2^28 pixels.
@@ -264,7 +275,10 @@ const LARGEST_PICTURE: u64 = 1 << 28;
 fn parse_resolution(text: &str) -> Result<[u32; 2], String> {
     let expected = || "expected width x height in pixels, as in 1920x1080".to_owned();
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
-    let size: [u32; 2] = [width.parse().map_err(|_| expected())?, height.parse().map_err(|_| expected())?];
+    let size: [u32; 2] = [
+        width.parse().map_err(|_| expected())?,
+        height.parse().map_err(|_| expected())?,
+    ];
     match u64::from(size[0]) * u64::from(size[1]) {
         0 => Err("neither width nor height may be 0".to_owned()),
         pixels if pixels > LARGEST_PICTURE => Err("more than 2^28 pixels".to_owned()),
@@ -284,7 +298,12 @@ fn parse_crop(text: &str) -> Result<PixelRect, String> {
 fn parse_pixel(text: &str) -> Result<PixelRect, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
-        Some(&[x, y]) if x < u32::MAX && y < u32::MAX => Ok(PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 }),
+        Some(&[x, y]) if x < u32::MAX && y < u32::MAX => Ok(PixelRect {
+            x0: x,
+            y0: y,
+            x1: x + 1,
+            y1: y + 1,
+        }),
         _ => Err("expected two pixel coordinates, as in 12,34".to_owned()),
     }
 }
@@ -305,7 +324,15 @@ mod tests {
         for bad in ["640", "0x480", "640x-1", "axb", "99999999x99999999"] {
             assert!(parse_resolution(bad).is_err(), "{bad}");
         }
-        assert_eq!(parse_crop("1,2,3,4"), Ok(PixelRect { x0: 1, y0: 2, x1: 3, y1: 4 }));
+        assert_eq!(
+            parse_crop("1,2,3,4"),
+            Ok(PixelRect {
+                x0: 1,
+                y0: 2,
+                x1: 3,
+                y1: 4
+            })
+        );
         for bad in ["1,2,3", "3,2,3,4", "1,2,3,4,5", "-1,2,3,4", ""] {
             assert!(parse_crop(bad).is_err(), "{bad}");
         }

@@ -51,11 +51,19 @@ struct Count {
 pub fn run(args: &InfoArgs) -> Result<()> {
     let desc = desc::load(&args.scene, &ParseOptions { lenient: args.lenient })?;
     let channel = if args.json { Channel::Nobody } else { Channel::Person };
-    Reporter { channel, scene: &args.scene, camera: "" }.warnings(&desc.warnings);
+    Reporter {
+        channel,
+        scene: &args.scene,
+        camera: "",
+    }
+    .warnings(&desc.warnings);
     let threads = rayon::current_num_threads();
     let options = SceneOptions {
         backend: args.backend,
-        build: BuildOptions { threads, ..BuildOptions::default() },
+        build: BuildOptions {
+            threads,
+            ..BuildOptions::default()
+        },
         ..SceneOptions::default()
     };
     let scene = Scene::build(&desc, &options)?;
@@ -141,20 +149,40 @@ impl std::fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let list = |counts: &[Count]| {
             let parts: Vec<_> = counts.iter().map(|c| format!("{} {}", c.count, c.kind)).collect();
-            if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
+            if parts.is_empty() {
+                "none".to_owned()
+            } else {
+                parts.join(", ")
+            }
         };
         let megabytes = |bytes: usize| bytes as f64 / (1024.0 * 1024.0);
         writeln!(f, "{}", self.scene)?;
         for view in &self.views {
             let [width, height] = view.resolution;
-            writeln!(f, "  view        {}: {width}x{height} pixels, {} spp", view.name, view.spp)?;
+            writeln!(
+                f,
+                "  view        {}: {width}x{height} pixels, {} spp",
+                view.name, view.spp
+            )?;
         }
-        writeln!(f, "  shapes      {} meshes of {} triangles, {} spheres", self.meshes, self.triangles, self.spheres)?;
-        writeln!(f, "  instances   {}, {} primitives in all", self.instances, self.instanced_primitives)?;
+        writeln!(
+            f,
+            "  shapes      {} meshes of {} triangles, {} spheres",
+            self.meshes, self.triangles, self.spheres
+        )?;
+        writeln!(
+            f,
+            "  instances   {}, {} primitives in all",
+            self.instances, self.instanced_primitives
+        )?;
         writeln!(f, "  bounds      {:?} to {:?}", self.bounds_min, self.bounds_max)?;
         writeln!(f, "  lights      {}", list(&self.lights))?;
         writeln!(f, "  materials   {}", list(&self.materials))?;
-        writeln!(f, "  backend     {}, built in {:.3} s", self.backend, self.build_seconds)?;
+        writeln!(
+            f,
+            "  backend     {}, built in {:.3} s",
+            self.backend, self.build_seconds
+        )?;
         writeln!(
             f,
             "  memory      {:.1} MiB geometry, {:.1} MiB backend, {:.1} MiB peak",

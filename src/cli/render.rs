@@ -50,7 +50,9 @@ impl<'a> Job<'a> {
             && !Integrator::NAMES.contains(&name.as_str())
         {
             let known = Integrator::NAMES.join(", ");
-            return Err(Error::Usage(format!("unknown integrator `{name}`: expected one of {known}")));
+            return Err(Error::Usage(format!(
+                "unknown integrator `{name}`: expected one of {known}"
+            )));
         }
         if let Some(output) = &args.output {
             ImageFormat::of_path(output)?;
@@ -90,7 +92,12 @@ impl<'a> Job<'a> {
 
     /// Notes a failure and goes on.
     fn fail(&mut self, scene: &Path, camera: &str, error: &Error) {
-        Reporter { channel: self.channel, scene, camera }.error(error);
+        Reporter {
+            channel: self.channel,
+            scene,
+            camera,
+        }
+        .error(error);
         (self.print_error)(error);
         self.exit_code = self.exit_code.max(error.exit_code());
     }
@@ -118,8 +125,15 @@ impl<'a> Job<'a> {
     /// anything is rendered.
     fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
         let args = self.args;
-        let desc = self.pool.install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
-        Reporter { channel: self.channel, scene: path, camera: "" }.warnings(&desc.warnings);
+        let desc = self
+            .pool
+            .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
+        Reporter {
+            channel: self.channel,
+            scene: path,
+            camera: "",
+        }
+        .warnings(&desc.warnings);
         let overrides = ViewOverrides {
             resolution: args.resolution,
             crop: args.crop.or(args.pixel),
@@ -132,7 +146,10 @@ impl<'a> Job<'a> {
         for view in &desc.views {
             let view = View::build(&desc, view, args.color.into(), &overrides)?;
             let file = self.output_path(path, &view, desc.views.len())?;
-            pictures.push(Picture { output: PendingOutput::create(&file)?, view });
+            pictures.push(Picture {
+                output: PendingOutput::create(&file)?,
+                view,
+            });
         }
         let load_seconds = start.elapsed().as_secs_f64();
         let options = SceneOptions {
@@ -145,14 +162,25 @@ impl<'a> Job<'a> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
-        Ok((Prepared { scene, desc, load_seconds }, pictures))
+        Ok((
+            Prepared {
+                scene,
+                desc,
+                load_seconds,
+            },
+            pictures,
+        ))
     }
 
     /// The file for a view: distinct from that of every other picture of this job.
     fn output_path(&mut self, scene: &Path, view: &View, views: usize) -> Result<PathBuf> {
         let file_name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let stem = file_name.trim_end_matches(".gz").trim_end_matches(".pbrt");
-        let several = if views > 1 { "{scene}-{camera}.exr" } else { "{scene}.exr" };
+        let several = if views > 1 {
+            "{scene}-{camera}.exr"
+        } else {
+            "{scene}.exr"
+        };
         let template = match (&self.args.output, &view.filename) {
             (Some(output), _) => output.to_string_lossy().into_owned(),
             (None, Some(film)) => film.to_string_lossy().into_owned(),
@@ -168,22 +196,22 @@ impl<'a> Job<'a> {
         )))
     }
 
-    fn render_picture(
-        &self,
-        path: &Path,
-        prepared: &Prepared,
-        picture: Picture,
-        start: Instant,
-    ) -> Result<Statistics> {
+    fn render_picture(&self, path: &Path, prepared: &Prepared, picture: Picture, start: Instant) -> Result<Statistics> {
         let Picture { view, output } = picture;
-        let reporter = Reporter { channel: self.channel, scene: path, camera: &view.name };
+        let reporter = Reporter {
+            channel: self.channel,
+            scene: path,
+            camera: &view.name,
+        };
         let mut integrator = Integrator::from_desc(&prepared.desc.integrator);
         if let Some(max_depth) = self.args.max_depth {
             integrator = integrator.with_max_depth(max_depth.0);
         }
         let film = view.film();
         let progress = reporter.progress();
-        let stats = self.pool.install(|| integrator.render(&prepared.scene, &view, &film, &progress));
+        let stats = self
+            .pool
+            .install(|| integrator.render(&prepared.scene, &view, &film, &progress));
         progress.finish();
 
         let accel = prepared.scene.accel().info();
@@ -262,7 +290,9 @@ impl<'a> Job<'a> {
             [one] if !several => serde_json::to_string_pretty(one),
             all => serde_json::to_string_pretty(all),
         };
-        let written = text.map_err(std::io::Error::other).and_then(|text| std::fs::write(path, text + "\n"));
+        let written = text
+            .map_err(std::io::Error::other)
+            .and_then(|text| std::fs::write(path, text + "\n"));
         if let Err(source) = written {
             let error = Error::io("write", path, source);
             (self.print_error)(&error);

@@ -39,7 +39,8 @@ pub struct Reporter<'a> {
 pub fn print_json(value: &impl Serialize) -> Result<()> {
     let line = serde_json::to_string(value).map_err(std::io::Error::other);
     let mut out = std::io::stdout().lock();
-    line.and_then(|line| writeln!(out, "{line}")).map_err(|e| Error::io("write", Path::new("stdout"), e))
+    line.and_then(|line| writeln!(out, "{line}"))
+        .map_err(|e| Error::io("write", Path::new("stdout"), e))
 }
 
 impl Reporter<'_> {
@@ -90,13 +91,25 @@ impl Reporter<'_> {
     pub fn progress(&self) -> PictureProgress<'_> {
         let bar = (self.channel == Channel::Person && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed_precise}  {prefix} left");
+            let style =
+                ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed_precise}  {prefix} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.set_message(self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned());
+            bar.set_message(
+                self.scene
+                    .file_stem()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned(),
+            );
             bar.set_prefix("?");
             bar
         });
-        PictureProgress { reporter: self, bar, start: Instant::now(), last: Mutex::new(None) }
+        PictureProgress {
+            reporter: self,
+            bar,
+            start: Instant::now(),
+            last: Mutex::new(None),
+        }
     }
 }
 
@@ -140,7 +153,8 @@ impl Progress for PictureProgress<'_> {
                 bar.set_position(done);
             }
             None => {
-                self.reporter.event(json!({"event": "progress", "done": fraction, "seconds_left": seconds_left}));
+                self.reporter
+                    .event(json!({"event": "progress", "done": fraction, "seconds_left": seconds_left}));
             }
         }
     }
@@ -150,5 +164,9 @@ impl Progress for PictureProgress<'_> {
 fn duration(seconds: f64) -> String {
     let seconds = seconds.min(1e9).ceil() as u64;
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
-    if hours > 0 { format!("{hours}:{minutes:02}:{seconds:02}") } else { format!("{minutes}:{seconds:02}") }
+    if hours > 0 {
+        format!("{hours}:{minutes:02}:{seconds:02}")
+    } else {
+        format!("{minutes}:{seconds:02}")
+    }
 }

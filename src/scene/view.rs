@@ -84,7 +84,9 @@ impl View {
         });
         let spp = overrides.spp.unwrap_or(view.sampler.pixel_samples);
         if let Some(sample) = overrides.sample.filter(|&sample| sample >= spp) {
-            return Err(Error::Usage(format!("there is no sample {sample}: a pixel has {spp}, counted from 0")));
+            return Err(Error::Usage(format!(
+                "there is no sample {sample}: a pixel has {spp}, counted from 0"
+            )));
         }
         Ok(Self {
             name: view.name.clone(),
@@ -93,11 +95,8 @@ impl View {
             crop,
             filter,
             sensor: Sensor::new(color, view.film.imaging_ratio()),
-            sampler: Sampler::new(
-                kind,
-                overrides.seed,
-                overrides.spp.unwrap_or(view.sampler.pixel_samples),
-            ),
+            sampler: Sampler::new(kind, overrides.seed, spp),
+            samples: overrides.sample.map_or(0..spp, |sample| sample..sample + 1),
             filename: view.film.filename.clone(),
         })
     }
