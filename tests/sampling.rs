@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use common::chi2::Chi2;
 use common::means::Means;
@@ -19,9 +19,13 @@ fn first_two(u: [f32; 4]) -> Vec2 {
 
 #[test]
 fn disk_and_triangle_have_their_density() {
-    let disk = Chi2::new([[-1.0, 1.0]; 2]).of(WARPS).run(
-        |u| Some(warp::sample_uniform_disk(first_two(u)).to_array().map(f64::from)),
-        |[x, y]| f64::from(x * x + y * y <= 1.0) * f64::from(warp::uniform_disk_pdf()),
+    // By azimuth and squared radius, whose area element is half of d phi d(r^2).
+    let disk = Chi2::new([[-PI, PI], [0.0, 1.0]]).of(WARPS).run(
+        |u| {
+            let p = warp::sample_uniform_disk(first_two(u)).as_dvec2();
+            Some([p.y.atan2(p.x), p.length_squared()])
+        },
+        |_| 0.5 * f64::from(warp::uniform_disk_pdf()),
     );
     disk.assert_ok("uniform disk");
     let triangle = Chi2::new([[0.0, 1.0]; 2]).of(WARPS).run(
@@ -38,8 +42,8 @@ fn disk_and_triangle_have_their_density() {
 #[test]
 fn directions_have_their_density() {
     let sphere = Chi2::sphere().of(WARPS);
-    type Sample = fn(Vec2) -> Vec3;
-    let cases: [(&str, Sample, fn(Vec3) -> SolidAnglePdf); 3] = [
+    type Warp = (&'static str, fn(Vec2) -> Vec3, fn(Vec3) -> SolidAnglePdf);
+    let cases: [Warp; 3] = [
         ("cosine hemisphere", warp::sample_cosine_hemisphere, |w| {
             warp::cosine_hemisphere_pdf(w.z)
         }),
@@ -216,8 +220,7 @@ fn what_should_be_independent_is_uniform_over_the_square() {
 fn independent_samples_of_one_pixel_are_uniform() {
     let sampler = Sampler::new(SamplerKind::Independent, 0, u32::MAX);
     let mut next = 0;
-    let consecutive = |u: [f32; 4]| {
-        let _ = u;
+    let consecutive = |_| {
         next += 2;
         Some([next - 2, next - 1].map(|i| f64::from(sampler.start(7, 9, i).draw1(0))))
     };
@@ -346,5 +349,4 @@ fn a_density_over_area_seen_from_a_point_integrates_to_one() {
     }));
     let z = (report.mean - 1.0) / report.variance.sqrt();
     assert!(z.abs() < 3.0 && report.variance.sqrt() < 0.005, "{report:?}");
-    let _ = TAU;
 }

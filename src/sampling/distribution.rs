@@ -1,5 +1,7 @@
 //! Distributions given by tables.
 
+use super::BELOW_ONE;
+
 /// Draws an index in proportion to given weights, in constant time (Walker 1974, Vose 1991).
 #[derive(Clone, Debug)]
 pub struct AliasTable {
@@ -86,9 +88,6 @@ impl AliasTable {
         (index, self.bins[index].pmf, remapped.clamp(0.0, BELOW_ONE))
     }
 }
-
-/// The largest number below one.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// A density proportional to the absolute value of a step function over an interval. The sign is kept: an estimate with
 /// signed weights, as for a pixel filter with negative lobes, is `value(cell) / pdf`.

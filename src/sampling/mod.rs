@@ -12,3 +12,6 @@ pub use distribution::{AliasTable, PiecewiseConstant1D};
 pub use measure::{AreaPdf, SolidAnglePdf};
 pub use mis::{balance_heuristic, power_heuristic};
 pub use sampler::{SampleStream, Sampler, SamplerKind};
+
+/// The largest number below one.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use glam::{DMat3, DVec3};
 
 use super::wavelengths::{LAMBDA_MIN, Wavelengths};
-use super::{LANES, SampledSpectrum, named};
+use super::{SampledSpectrum, named};
 
 /// Entries of a table: 360 to 830 nm.
 pub(super) const ENTRIES: usize = 471;
@@ -27,8 +27,7 @@ impl DenseTable {
     /// The value of the entry nearest to `lambda` (nm); beyond the ends that of the end.
     #[inline]
     pub fn at(&self, lambda: f32) -> f32 {
-        // The cast sends what is negative to 0.
-        self.0[((lambda - (LAMBDA_MIN - 0.5)) as usize).min(ENTRIES - 1)]
+        self.0[entry(lambda)]
     }
 
     /// The values at the wavelengths of a path.
@@ -41,6 +40,13 @@ impl DenseTable {
     pub fn values(&self) -> &[f32; ENTRIES] {
         &self.0
     }
+}
+
+/// The entry nearest to `lambda` (nm), the first or last if it is outside.
+#[inline]
+fn entry(lambda: f32) -> usize {
+    // The cast sends what is negative to 0.
+    ((lambda - (LAMBDA_MIN - 0.5)) as usize).min(ENTRIES - 1)
 }
 
 /// The wavelength of entry `i`, in nm.
@@ -69,10 +75,8 @@ static OBSERVER: LazyLock<Observer> = LazyLock::new(|| {
 #[inline]
 pub fn xyz_bar(wavelengths: &Wavelengths) -> [SampledSpectrum; 3] {
     let [x, y, z] = &OBSERVER.bars;
-    let cells = wavelengths
-        .lambda
-        .map(|lambda| ((lambda - (LAMBDA_MIN - 0.5)) as usize).min(ENTRIES - 1));
-    [x, y, z].map(|bar| SampledSpectrum(std::array::from_fn::<_, LANES, _>(|lane| bar.0[cells[lane]])))
+    let entries = wavelengths.lambda.map(entry);
+    [x, y, z].map(|bar| SampledSpectrum(entries.map(|i| bar.0[i])))
 }
 
 /// The integral of ȳ over the visible range, in nm: about 106.857.
@@ -138,6 +142,7 @@ pub fn srgb_from_xyz_rows() -> [[f32; 3]; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spectrum::LANES;
 
     #[test]
     fn observer_is_the_published_one() {

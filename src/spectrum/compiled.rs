@@ -133,7 +133,7 @@ impl Spectrum {
                 let xyz = cie::integrate_xyz(|nm| self.value(nm) * d65.at(nm));
                 let white = cie::integrate_y(|nm| d65.at(nm));
                 let largest = self.max_value();
-                lanes(cie::xyz_to_srgb(xyz).map(|c| ((c / white) as f32).max(0.0).min(largest)))
+                lanes(cie::xyz_to_srgb(xyz).map(|c| ((c / white) as f32).min(largest).max(0.0)))
             }
             (SpectrumRole::Emission, Kind::Rgb(rgb)) if rgb.illuminant => lanes(rgb.rgb) * self.photometric(),
             (SpectrumRole::Emission, _) => {

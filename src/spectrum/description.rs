@@ -265,7 +265,7 @@ mod tests {
     fn blackbodies_peak_where_wien_says() {
         for kelvin in [3600.0, 5000.0, 6504.0, 7900.0] {
             let body = Spectrum::blackbody(kelvin);
-            let peak = 2.897_771_9e6 / kelvin;
+            let peak = 2.897_772e6 / kelvin;
             assert!((body.value(peak) - 1.0).abs() < 1e-6);
             assert!(body.value(peak - 5.0) < 1.0 && body.value(peak + 5.0) < 1.0);
         }

@@ -4,7 +4,7 @@
 //! few samples are pooled. Samples that fail (`None`) are a cell of their own, expected as often as the density's integral
 //! falls short of 1.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::fmt::Write;
 
 use glam::Vec3;
@@ -92,7 +92,7 @@ impl Chi2 {
         let [columns, rows] = self.bins;
         let mut random = Random::new(self.seed);
         let mut observed = vec![0_usize; columns * rows];
-        let (mut failed, mut outside) = (0, 0);
+        let (mut failed, mut outside) = (0_usize, 0);
         for _ in 0..self.samples {
             match sample(random.unit4()).map(|p| self.cell(p)) {
                 None => failed += 1,
@@ -259,6 +259,3 @@ fn gauss(f: &impl Fn([f64; 2]) -> f64, [x, y]: [[f64; 2]; 2]) -> f64 {
     }
     sum * 0.25 * (x[1] - x[0]) * (y[1] - y[0])
 }
-
-/// The solid angle of the whole sphere, for densities that are uniform.
-pub const FULL_SPHERE: f64 = 2.0 * TAU;

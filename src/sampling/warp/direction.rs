@@ -85,7 +85,7 @@ pub fn uniform_cone_pdf(one_minus_cos_max: f32) -> SolidAnglePdf {
 /// The numbers that [`sample_uniform_cone`] maps to `w`, a direction of the cone.
 pub fn invert_uniform_cone(w: Vec3, one_minus_cos_max: f32) -> Vec2 {
     let one_minus_cos = if w.z > 0.0 {
-        one_minus_cos(w.truncate().length_squared())
+        w.truncate().length_squared() / (1.0 + w.z)
     } else {
         1.0 - w.z
     };

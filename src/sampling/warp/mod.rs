@@ -5,6 +5,8 @@
 //! unit length and relative to +z. A density may be zero at the rim of a domain, which rounding can reach: such a sample
 //! contributes nothing and must be skipped, not divided by.
 
+use super::BELOW_ONE;
+
 mod direction;
 mod interval;
 mod plane;
@@ -19,9 +21,6 @@ pub use plane::{
     invert_uniform_disk, invert_uniform_triangle, sample_uniform_disk, sample_uniform_triangle, uniform_disk_pdf,
     uniform_triangle_pdf,
 };
-
-/// The largest number below one.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Rounds what should be in [0, 1) into it.
 #[inline]
