@@ -137,7 +137,7 @@ fn sample_light(
         factor *= power_heuristic(pdf_light, pdf_bsdf) / pdf.0;
     }
     let ray = match sample.end {
-        LightEnd::Point { p, p_error, ng } => si.spawn_ray_to(p, p_error, ng),
+        LightEnd::Point { p, error, ng } => si.spawn_ray_to(p, error, ng),
         LightEnd::Infinity => si.spawn_ray(sample.wi),
     };
     if ray.is_valid() {

@@ -3,8 +3,8 @@
 use std::f32::consts::PI;
 
 use super::{LightDensity, LightEnd, LightSample};
-use crate::math::Frame;
-use crate::math::{DVec3, Vec2, Vec3, gamma};
+use crate::geometry::triangle_error;
+use crate::math::{DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
@@ -34,6 +34,8 @@ pub enum EmitterShape {
 pub struct AreaLight {
     shape: EmitterShape,
     area: f32,
+    /// Of a sampled point, see [`SurfaceInteraction::error`](crate::geometry::SurfaceInteraction::error); of a triangle only.
+    error: f32,
     radiance: CompiledSpectrum,
     two_sided: bool,
 }
@@ -41,7 +43,7 @@ pub struct AreaLight {
 /// A point of an emitter.
 struct SurfaceSample {
     p: Vec3,
-    p_error: Vec3,
+    error: f32,
     ng: Vec3,
     pdf: SolidAnglePdf,
 }
@@ -50,9 +52,10 @@ impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
         let area = shape.area();
-        (area > 0.0).then_some(Self {
-            shape,
+        (area > 0.0).then(|| Self {
             area,
+            error: shape.error(),
+            shape,
             radiance,
             two_sided,
         })
@@ -118,7 +121,7 @@ impl AreaLight {
             wi,
             end: LightEnd::Point {
                 p: sample.p,
-                p_error: sample.p_error,
+                error: sample.error,
                 ng: sample.ng,
             },
             density: LightDensity::Continuous(sample.pdf),
@@ -128,10 +131,9 @@ impl AreaLight {
     fn sample_triangle(&self, vertices: &[Vec3; 3], ng: Vec3, from: Vec3, u: Vec2) -> SurfaceSample {
         let b = warp::sample_uniform_triangle(u);
         let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
-        let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
         SurfaceSample {
             p,
-            p_error: gamma(6) * largest,
+            error: self.error,
             ng,
             pdf: self.uniform_pdf(from, p, ng),
         }
@@ -152,7 +154,7 @@ impl AreaLight {
         };
         SurfaceSample {
             p,
-            p_error: p.abs() * gamma(1),
+            error: ng.abs().dot(p.abs()) * gamma(1),
             ng,
             pdf,
         }
@@ -164,6 +166,17 @@ impl AreaLight {
 }
 
 impl EmitterShape {
+    /// Of any point sampled on a triangle: that of its plane, and the rounding of three weighted corners.
+    fn error(&self) -> f32 {
+        match self {
+            Self::Triangle { vertices, ng } => {
+                let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
+                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(6) * ng.abs().dot(largest)
+            }
+            Self::Sphere { .. } => 0.0,
+        }
+    }
+
     fn area(&self) -> f32 {
         match self {
             Self::Triangle {

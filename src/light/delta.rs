@@ -27,7 +27,7 @@ impl PointLight {
             wi: to_light / distance_squared.sqrt(),
             end: LightEnd::Point {
                 p: self.position,
-                p_error: Vec3::ZERO,
+                error: 0.0,
                 ng: Vec3::ZERO,
             },
             density: LightDensity::Delta,

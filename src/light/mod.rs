@@ -43,12 +43,12 @@ pub enum Light {
 /// Where a light was sampled.
 #[derive(Clone, Copy, Debug)]
 pub enum LightEnd {
-    /// At a point of a surface (with its error and its normal) or, with two zero vectors, in space.
+    /// At a point of a surface (with its error and its normal) or, with both zero, in space.
     Point {
         /// The point.
         p: Vec3,
-        /// See [`SurfaceInteraction::p_error`].
-        p_error: Vec3,
+        /// See [`SurfaceInteraction::error`].
+        error: f32,
         /// Geometric normal.
         ng: Vec3,
     },

@@ -8,13 +8,12 @@ pub const fn gamma(n: u32) -> f32 {
     nu / (1.0 - nu)
 }
 
-/// The origin of a ray that leaves point `p` in direction `w`, when the true point lies within `p_error` (per axis) of `p` on a
-/// surface of unit normal `n`: the nearest that is surely on the side of the surface that `w` points to
-/// (Pharr, Jakob, Humphreys 2023, section 6.8.6).
+/// The origin of a ray that leaves point `p` in direction `w`, when the surface (of unit normal `n`) that a backend sees may be
+/// `error` away from `p` along the normal: the nearest point that is surely on the side that `w` points to (after Pharr, Jakob,
+/// Humphreys 2023, section 6.8.6).
 #[inline]
-pub fn offset_ray_origin(p: Vec3, p_error: Vec3, n: Vec3, w: Vec3) -> Vec3 {
-    let distance = n.abs().dot(p_error);
-    let offset = if w.dot(n) < 0.0 { -distance * n } else { distance * n };
+pub fn offset_ray_origin(p: Vec3, error: f32, n: Vec3, w: Vec3) -> Vec3 {
+    let offset = if w.dot(n) < 0.0 { -error * n } else { error * n };
     let q = p + offset;
     Vec3::new(
         round_away(q.x, offset.x),
