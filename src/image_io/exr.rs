@@ -217,7 +217,6 @@ fn window_from(bounds: IntegerBounds) -> Result<Window, String> {
 }
 
 /// The message of the crate's error; reading and writing here is in memory, so an I/O error is one of the contents too.
-#[expect(clippy::needless_pass_by_value, reason = "the form that `map_err` takes")]
 fn explain(error: ::exr::error::Error) -> String {
     match error {
         ::exr::error::Error::NotSupported(what) => format!("EXR file with an unsupported feature: {what}"),

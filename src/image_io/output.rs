@@ -25,7 +25,7 @@ impl ImageFormat {
     /// # Errors
     /// [`Error::Usage`] for any other extension, or none.
     pub fn of_path(path: &Path) -> Result<Self> {
-        match path.extension().map(|e| e.to_ascii_lowercase()) {
+        match path.extension().map(std::ffi::OsStr::to_ascii_lowercase) {
             Some(extension) if extension == "exr" => Ok(Self::Exr),
             Some(extension) if extension == "png" => Ok(Self::Png),
             _ => Err(Error::Usage(format!(

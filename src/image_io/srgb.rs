@@ -2,8 +2,10 @@
 
 /// The encoded value in [0, 1] of a linear one; what is outside [0, 1] is clamped, NaN is 0.
 pub fn encode(linear: f32) -> f32 {
-    // `max` and `min` return the other operand for NaN.
-    let linear = linear.max(0.0).min(1.0);
+    if linear.is_nan() {
+        return 0.0;
+    }
+    let linear = linear.clamp(0.0, 1.0);
     if linear <= 0.003_130_8 {
         12.92 * linear
     } else {
