@@ -4,6 +4,8 @@
 //! It is watertight: [`triangle`] says how two triangles leave no gap at their edge, [`ray`] why no box is passed over whose
 //! triangle would be hit. Both kernels give the same bits.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod bins;
 mod build;
 mod collapse;
@@ -52,6 +54,8 @@ pub struct Bvh {
 /// Which kernel traces.
 #[derive(Clone, Copy)]
 enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx2(avx2::Avx2),
     Portable(Portable),
 }
 
@@ -105,6 +109,10 @@ impl Bvh {
 
 impl Instructions {
     fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(kernel) = avx2::Avx2::detect() {
+            return Self::Avx2(kernel);
+        }
         Self::Portable(Portable)
     }
 }
@@ -174,12 +182,16 @@ impl Accel for Bvh {
     fn intersect(&self, _kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
         match self.instructions {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) => self.scene.intersect(kernel, rays, hits, filter),
             Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
         }
     }
 
     fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         match self.instructions {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
             Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),
         }
     }
