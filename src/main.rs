@@ -1,3 +1,7 @@
 //! The `lucerna` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    lucerna::cli::run(std::env::args_os(), &|error| eprintln!("lucerna: {error}"))
+}

@@ -1,1 +1,42 @@
-//! To be written.
+//! The command line: one file a subcommand. [`args`] holds what was typed; a subcommand turns it into what is meant.
+
+pub mod args;
+mod compare;
+mod info;
+mod render;
+mod report;
+mod stats;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::error::Error;
+use args::{Cli, Command};
+
+/// Parses `args` and does what they say. Each error goes to `print_error` as it happens: one failed scene does not stop the
+/// others. The exit code is 0 if all went well, 1 if a render or a file failed, 2 for bad usage or a bad scene; the highest, if
+/// there are several.
+pub fn run(args: impl IntoIterator<Item = OsString>, print_error: &dyn Fn(&Error)) -> ExitCode {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version go to stdout with code 0, errors to stderr with code 2. A closed pipe is not worth a panic.
+            let _ = error.print();
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    let result = match cli.command {
+        Command::Render(args) => return ExitCode::from(render::run(&args, print_error)),
+        Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            print_error(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -13,6 +13,7 @@
 //! - `"integer maxdepth" -1` of an integrator: paths of any length;
 //! - `PixelFilter "blackmanharris"`.
 
+mod bytes;
 mod light;
 mod material;
 pub mod pbrt;

@@ -171,6 +171,23 @@ impl TriangleMesh {
         std::array::from_fn(|i| now[i] * (1.0 - fraction) + next[i] * fraction)
     }
 
+    /// The unit geometric normal of a triangle at scene time 0, on the side of its shading normals if it has any; zero if the
+    /// triangle has no area.
+    pub fn geometric_normal(&self, triangle: usize) -> Vec3 {
+        let [a, b, c] = self.triangle(triangle, 0.0).map(Vec3::as_dvec3);
+        let ng = (b - a).cross(c - a);
+        let flip = match &self.normals {
+            None => self.flip_normal,
+            Some(normals) => {
+                let mean: Vec3 = self.indices[triangle].iter().map(|&v| normals[v as usize]).sum();
+                let cos = ng.dot(mean.as_dvec3());
+                cos < 0.0 || (cos == 0.0 && self.flip_normal)
+            }
+        };
+        let ng = ng.normalize_or_zero().as_vec3();
+        if flip { -ng } else { ng }
+    }
+
     /// The time step at or before `time`, and how far towards the next one it is, in [0, 1]. 0 and 0 if nothing moves.
     #[inline]
     pub fn time_step(&self, time: f32) -> (usize, f32) {

@@ -181,14 +181,13 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
     let corners = mesh.indices()[triangle].map(|v| v as usize);
     let mut ns = ng;
     if let Some(normals) = mesh.normals() {
-        let n: DVec3 = corners.iter().zip(w).map(|(&v, w)| normals[v].as_dvec3() * w).sum();
-        if n != DVec3::ZERO {
-            ns = n;
-            // With normals given they say which side is out, as in pbrt.
-            if ng.dot(ns) < 0.0 {
-                ng = -ng;
-            }
+        // With normals given they say which side is out, as in pbrt.
+        let side: Vec3 = corners.iter().map(|&v| normals[v]).sum();
+        if ng.dot(side.as_dvec3()) < 0.0 {
+            ng = -ng;
         }
+        let n: DVec3 = corners.iter().zip(w).map(|(&v, w)| normals[v].as_dvec3() * w).sum();
+        ns = if n == DVec3::ZERO { ng } else { n };
     }
     let uvs = mesh
         .uvs()

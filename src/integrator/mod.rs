@@ -1,1 +1,129 @@
-//! To be written.
+//! Estimators of the rendering equation.
+//!
+//! An integrator never traces one ray. It advances a wave (`wave.rs`): the paths of one tile go through the same stage together,
+//! and the rays of a stage reach the backend as packets.
+//!
+//! Which random numbers serve what, by group of a [`SampleStream`](crate::sampling::SampleStream):
+//!
+//! | group | numbers |
+//! |---|---|
+//! | 0 | film x, film y, lens, lens |
+//! | 1 | wavelength, time |
+//! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
+//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
+
+mod path;
+mod schedule;
+mod shadow;
+mod wave;
+
+use std::time::{Duration, Instant};
+
+pub use path::PathIntegrator;
+pub use schedule::{Progress, Silent};
+
+use crate::desc::IntegratorDesc;
+use crate::film::Film;
+use crate::scene::{Scene, View};
+
+/// The integrators there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Unidirectional path tracing.
+    Path(PathIntegrator),
+}
+
+impl Integrator {
+    /// The names by which a command line chooses one.
+    pub const NAMES: &[&str] = &["path"];
+
+    /// The one that a scene asks for.
+    pub fn from_desc(desc: &IntegratorDesc) -> Self {
+        match *desc {
+            IntegratorDesc::Path { max_depth, .. } => Self::Path(PathIntegrator { max_depth }),
+        }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Path(_) => "path",
+        }
+    }
+
+    /// The same integrator for paths of at most `max_depth` scattering events; `None` for any number.
+    #[must_use]
+    pub fn with_max_depth(self, max_depth: Option<u32>) -> Self {
+        match self {
+            Self::Path(_) => Self::Path(PathIntegrator { max_depth }),
+        }
+    }
+
+    /// Renders all samples of `view` onto `film`, on the threads of the rayon pool that calls. The image does not depend on how
+    /// many those are.
+    pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
+        let start = Instant::now();
+        let mut stats = match self {
+            Self::Path(path) => schedule::render_tiles(scene, view, film, path, progress),
+        };
+        stats.render_time = start.elapsed();
+        stats
+    }
+}
+
+/// What a render did.
+#[derive(Clone, Debug, Default)]
+pub struct RenderStats {
+    /// Wall-clock time of the render.
+    pub render_time: Duration,
+    /// Time inside the backend, summed over threads.
+    pub backend_time: Duration,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays scattered by surfaces.
+    pub bounce_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// Samples that counted as black because they were not finite or negative.
+    pub dropped_samples: u64,
+    /// The first few of them, by pixel and sample.
+    pub dropped: Vec<DroppedSample>,
+}
+
+/// A sample that was dropped. With the seed it can be rendered again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct DroppedSample {
+    /// Column and row of the pixel.
+    pub pixel: [u32; 2],
+    /// Index of the sample.
+    pub sample: u32,
+}
+
+/// How many dropped samples are kept by name.
+const DROPPED_KEPT: usize = 16;
+
+impl RenderStats {
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.camera_rays + self.bounce_rays + self.shadow_rays
+    }
+
+    /// Adds what another thread did.
+    fn merge(&mut self, other: Self) {
+        self.backend_time += other.backend_time;
+        self.camera_rays += other.camera_rays;
+        self.bounce_rays += other.bounce_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.dropped_samples += other.dropped_samples;
+        self.dropped.extend(other.dropped);
+        self.dropped.sort_unstable();
+        self.dropped.truncate(DROPPED_KEPT);
+    }
+
+    fn drop_sample(&mut self, sample: DroppedSample) {
+        self.dropped_samples += 1;
+        if self.dropped.len() < DROPPED_KEPT {
+            self.dropped.push(sample);
+        }
+    }
+}

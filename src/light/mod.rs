@@ -1,1 +1,120 @@
-//! To be written.
+//! Lights: what they emit, and how a direction towards one is sampled. Each kind is a file.
+
+mod area;
+mod delta;
+mod environment;
+mod sampler;
+
+pub use area::{AreaLight, EmitterShape};
+pub use delta::{DistantLight, PointLight};
+pub use environment::EnvironmentLight;
+pub use sampler::{LightSampler, SampledLight};
+
+use crate::geometry::SurfaceInteraction;
+use crate::math::{Bounds3, Vec2, Vec3};
+use crate::sampling::SolidAnglePdf;
+use crate::spectrum::{SampledSpectrum, Wavelengths};
+
+/// A light of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LightId(pub u32);
+
+impl LightId {
+    /// As an index into a slice.
+    #[inline]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Something that emits.
+#[derive(Clone, Debug)]
+pub enum Light {
+    /// A triangle or a sphere.
+    Area(AreaLight),
+    /// A point.
+    Point(PointLight),
+    /// A direction.
+    Distant(DistantLight),
+    /// All around the scene.
+    Environment(EnvironmentLight),
+}
+
+/// Where a light was sampled.
+#[derive(Clone, Copy, Debug)]
+pub enum LightEnd {
+    /// At a point of a surface (with its error and its normal) or, with two zero vectors, in space.
+    Point {
+        /// The point.
+        p: Vec3,
+        /// See [`SurfaceInteraction::p_error`].
+        p_error: Vec3,
+        /// Geometric normal.
+        ng: Vec3,
+    },
+    /// Infinitely far away.
+    Infinity,
+}
+
+/// How likely a sampled point of a light was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightDensity {
+    /// A BSDF sample could have found it as well.
+    Continuous(SolidAnglePdf),
+    /// Only a light sample can find it.
+    Delta,
+}
+
+/// A direction towards a light.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Radiance that arrives if nothing is in the way; of a [`LightDensity::Delta`] light, irradiance at normal incidence.
+    pub li: SampledSpectrum,
+    /// Unit direction towards the light.
+    pub wi: Vec3,
+    /// Where the shadow ray ends.
+    pub end: LightEnd,
+    /// With respect to solid angle at the reference point.
+    pub density: LightDensity,
+}
+
+impl Light {
+    /// Samples a direction from the point `p` towards the light. `None` carries nothing.
+    #[inline]
+    pub fn sample_li(&self, p: Vec3, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
+        match self {
+            Self::Area(light) => light.sample_li(p, u, lambda),
+            Self::Point(light) => light.sample_li(p, lambda),
+            Self::Distant(light) => Some(light.sample_li(lambda)),
+            Self::Environment(light) => Some(light.sample_li(u, lambda)),
+        }
+    }
+
+    /// Radiance emitted at a surface point of the light in direction `w`; 0 for a light that has no surface.
+    #[inline]
+    pub fn le(&self, si: &SurfaceInteraction, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
+        match self {
+            Self::Area(light) => light.le(si.ng, w, lambda),
+            Self::Point(_) | Self::Distant(_) | Self::Environment(_) => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// Density with which [`Light::sample_li`] from `p` gives the direction to the surface point `si` of the light.
+    #[inline]
+    pub fn pdf_li(&self, p: Vec3, si: &SurfaceInteraction) -> SolidAnglePdf {
+        match self {
+            Self::Area(light) => light.pdf_li(p, si.p, si.ng),
+            Self::Point(_) | Self::Distant(_) | Self::Environment(_) => SolidAnglePdf(0.0),
+        }
+    }
+
+    /// Emitted power weighed by the luminous efficiency of its spectrum, to choose lights by; `bounds` are those of the scene.
+    pub fn power(&self, bounds: &Bounds3) -> f32 {
+        match self {
+            Self::Area(light) => light.power(),
+            Self::Point(light) => light.power(),
+            Self::Distant(light) => light.power(bounds),
+            Self::Environment(light) => light.power(bounds),
+        }
+    }
+}

@@ -1,1 +1,99 @@
-//! To be written.
+//! What surfaces do to light: materials as a scene names them, and the BSDF that one gives at a point for some wavelengths.
+//!
+//! Each lobe is a file. Lobes work in the local frame of the shading normal, where the cosine to the normal is z.
+
+mod bsdf;
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod fresnel;
+mod microfacet;
+
+pub use bsdf::{Bsdf, BsdfSample, Density, LocalSample, TransportMode};
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use fresnel::{fresnel_complex, fresnel_dielectric, refract};
+pub use microfacet::Ggx;
+
+use crate::geometry::SurfaceInteraction;
+use crate::math::Frame;
+use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+
+use bsdf::Lobe;
+
+/// The material of a surface.
+#[derive(Clone, Debug)]
+pub enum Material {
+    /// Lambertian reflection on both sides.
+    Diffuse {
+        /// Albedo, in [0, 1].
+        reflectance: CompiledSpectrum,
+    },
+    /// A metal, smooth or rough, on both sides.
+    Conductor {
+        /// What it reflects.
+        ior: ConductorIor,
+        /// Microfacet slopes; `None` is smooth.
+        roughness: Option<Ggx>,
+    },
+    /// The boundary of a transparent body, smooth or rough.
+    Dielectric {
+        /// Index of refraction inside over that outside.
+        eta: CompiledSpectrum,
+        /// Microfacet slopes; `None` is smooth.
+        roughness: Option<Ggx>,
+    },
+}
+
+/// How the complex index of refraction of a conductor is given.
+#[derive(Clone, Debug)]
+pub enum ConductorIor {
+    /// n + i k.
+    Measured {
+        /// n.
+        eta: CompiledSpectrum,
+        /// k.
+        k: CompiledSpectrum,
+    },
+    /// The reflectance at normal incidence, from which n = 1 and k follow, as in pbrt-v4.
+    Reflectance(CompiledSpectrum),
+}
+
+impl Material {
+    /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
+    #[inline]
+    pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf {
+        let frame = Frame::from_normal_tangent(si.ns, si.dpdu);
+        Bsdf::new(frame, self.lobe(lambda))
+    }
+
+    fn lobe(&self, lambda: &mut Wavelengths) -> Lobe {
+        match self {
+            Self::Diffuse { reflectance } => Lobe::Diffuse(Diffuse::new(reflectance.sample(lambda))),
+            Self::Conductor { ior, roughness } => {
+                let (eta, k) = ior.sample(lambda);
+                Lobe::Conductor(Conductor::new(eta, k, *roughness))
+            }
+            Self::Dielectric { eta, roughness } => {
+                if !eta.is_constant_over_wavelengths() {
+                    lambda.terminate_secondary();
+                }
+                Lobe::Dielectric(Dielectric::new(eta.sample(lambda).0[0], *roughness))
+            }
+        }
+    }
+}
+
+impl ConductorIor {
+    fn sample(&self, lambda: &Wavelengths) -> (SampledSpectrum, SampledSpectrum) {
+        match self {
+            Self::Measured { eta, k } => (eta.sample(lambda), k.sample(lambda)),
+            Self::Reflectance(r) => {
+                // With n = 1, R = k² / (4 + k²) at normal incidence.
+                let r = r.sample(lambda).map(|r| r.clamp(0.0, 0.9999));
+                (SampledSpectrum::ONE, r.map(|r| 2.0 * (r / (1.0 - r)).sqrt()))
+            }
+        }
+    }
+}

@@ -1,9 +1,14 @@
 //! Random numbers and what is made of them: samplers, warps, discrete distributions, densities and their measures.
 
-/// A probability density with respect to solid angle, in sr⁻¹.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct SolidAnglePdf(pub f32);
+pub mod distribution;
+pub mod hash;
+mod measure;
+pub mod mis;
+mod sampler;
+mod sobol;
+pub mod warp;
 
-/// A probability density with respect to area, in scene units⁻².
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct AreaPdf(pub f32);
+pub use distribution::{AliasTable, PiecewiseConstant1D};
+pub use measure::{AreaPdf, SolidAnglePdf};
+pub use mis::{balance_heuristic, power_heuristic};
+pub use sampler::{SampleStream, Sampler, SamplerKind};

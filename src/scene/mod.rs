@@ -1,1 +1,138 @@
-//! To be written.
+//! A scene ready to be rendered: what rays can hit, what it is made of, what emits. Built from a description, with one backend; it
+//! outlives renders and serves many [`View`]s.
+
+mod build;
+mod shapes;
+mod spectra;
+mod view;
+
+use std::sync::Arc;
+
+use crate::accel::{Accel, Backend, BuildOptions};
+use crate::geometry::{GeometryId, PrimitiveId, World};
+use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
+use crate::material::Material;
+use crate::math::Bounds3;
+use crate::spectrum::ColorMode;
+
+pub use view::{View, ViewOverrides};
+
+/// How to build a [`Scene`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SceneOptions {
+    /// Who answers ray queries.
+    pub backend: Backend,
+    /// How its structures are built.
+    pub build: BuildOptions,
+    /// Whether transport is spectral or rgb.
+    pub color: ColorMode,
+}
+
+/// Everything that an integrator needs to know of a scene.
+pub struct Scene {
+    world: Arc<World>,
+    accel: Box<dyn Accel>,
+    color: ColorMode,
+    bounds: Bounds3,
+    materials: Vec<Material>,
+    /// By geometry.
+    surfaces: Vec<Surface>,
+    lights: Vec<Light>,
+    /// Those that a ray meets when it leaves the scene.
+    environments: Vec<LightId>,
+    light_sampler: LightSampler,
+    /// Seconds that the backend took to build.
+    build_seconds: f64,
+}
+
+/// What a geometry is made of and which lights its primitives are.
+#[derive(Clone, Debug)]
+struct Surface {
+    /// Index of the material.
+    material: u32,
+    /// By primitive; empty if none emits.
+    lights: Vec<Option<LightId>>,
+}
+
+impl Scene {
+    /// What rays can hit.
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// Who answers ray queries.
+    pub fn accel(&self) -> &dyn Accel {
+        self.accel.as_ref()
+    }
+
+    /// This scene with the backend wrapped by `wrap`, to listen to its queries.
+    #[must_use]
+    pub fn map_accel(mut self, wrap: impl FnOnce(Box<dyn Accel>) -> Box<dyn Accel>) -> Self {
+        self.accel = wrap(self.accel);
+        self
+    }
+
+    /// Whether transport is spectral or rgb.
+    pub fn color(&self) -> ColorMode {
+        self.color
+    }
+
+    /// A box around everything that can be hit.
+    pub fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+
+    /// The material of a geometry.
+    #[inline]
+    pub fn material(&self, geometry: GeometryId) -> &Material {
+        &self.materials[self.surfaces[geometry.index()].material as usize]
+    }
+
+    /// All materials.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// The light that a primitive is, if it emits.
+    #[inline]
+    pub fn light_of(&self, geometry: GeometryId, primitive: PrimitiveId) -> Option<LightId> {
+        let lights = &self.surfaces[geometry.index()].lights;
+        lights.get(primitive.index()).copied().flatten()
+    }
+
+    /// All lights, by [`LightId`].
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// One light.
+    #[inline]
+    pub fn light(&self, id: LightId) -> &Light {
+        &self.lights[id.index()]
+    }
+
+    /// The lights that a ray meets when it leaves the scene.
+    #[inline]
+    pub fn environments(&self) -> impl Iterator<Item = (LightId, &EnvironmentLight)> {
+        self.environments.iter().filter_map(|&id| match self.light(id) {
+            Light::Environment(light) => Some((id, light)),
+            Light::Area(_) | Light::Point(_) | Light::Distant(_) => None,
+        })
+    }
+
+    /// Chooses lights for next-event estimation.
+    #[inline]
+    pub fn light_sampler(&self) -> &LightSampler {
+        &self.light_sampler
+    }
+
+    /// Seconds that the backend took to build.
+    pub fn build_seconds(&self) -> f64 {
+        self.build_seconds
+    }
+
+    /// Bytes of geometry and of the backend's structures.
+    pub fn memory(&self) -> usize {
+        self.world.memory() + self.accel.info().memory
+    }
+}

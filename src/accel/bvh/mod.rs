@@ -1,31 +1,199 @@
-//! Our own BVH, pure Rust.
+//! Our own BVH, pure Rust: a binned SAH build ([`build`], [`bins`]) collapsed to eight children a node ([`collapse`]), and one
+//! traversal ([`traverse`]) over a kernel of vector instructions that is chosen at run time ([`kernel`], [`avx2`]).
+//!
+//! It is watertight: [`triangle`] says how two triangles leave no gap at their edge, [`ray`] why no box is passed over whose
+//! triangle would be hit. Both kernels give the same bits.
+
+mod bins;
+mod build;
+mod collapse;
+mod kernel;
+mod leaf;
+mod node;
+pub(super) mod query;
+pub(super) mod ray;
+mod traverse;
+mod tree;
+pub(super) mod triangle;
 
 use std::sync::Arc;
 
-use super::{Accel, AccelInfo, BuildOptions, HitFilter, RayKind};
-use crate::geometry::{HitPacket, RayPacket, World};
+use rayon::prelude::*;
 
-/// An 8-wide BVH over a world.
-pub struct Bvh;
+use self::kernel::{Kernel, Portable};
+use self::query::Query;
+use self::ray::{LocalRay, direction_scale};
+use self::traverse::{Level, STACK};
+use self::tree::GroupTrees;
+use super::{Accel, AccelInfo, Backend, BuildOptions, BuildQuality, HitFilter, RayKind};
+use crate::geometry::{GroupId, HitPacket, LANES, Opacity, RayPacket, World};
+
+/// A world and the trees over it.
+struct Scene {
+    world: Arc<World>,
+    /// The top level: geometries in world space, and instances.
+    top: GroupTrees,
+    /// By [`GroupId`].
+    groups: Vec<GroupTrees>,
+    /// Of each geometry, whether hits on it are filtered.
+    filtered: Vec<bool>,
+}
+
+/// An 8-wide BVH over a world: one tree over what is in world space and over the instances, one for each group.
+///
+/// Hits are found in single precision by the watertight test (of spheres, in double precision), and where distances are equal
+/// the hit of least (geometry, primitive, instance) is reported; an instance precedes "none". The answer for a ray does not
+/// depend on the other rays of a call, nor on the instructions of the processor.
+pub struct Bvh {
+    scene: Scene,
+    instructions: Instructions,
+}
+
+/// Which kernel traces.
+#[derive(Clone, Copy)]
+enum Instructions {
+    Portable(Portable),
+}
 
 impl Bvh {
-    /// Builds it.
-    pub fn build(_world: &Arc<World>, _options: &BuildOptions) -> Self {
-        Self
+    /// Builds it, in the rayon pool of the caller. The tree does not depend on the number of threads.
+    ///
+    /// The quality is the number of bins of the surface area heuristic along each axis: 8, 16 or 32. [`BuildOptions::robust`]
+    /// makes no difference.
+    pub fn build(world: &Arc<World>, options: &BuildOptions) -> Self {
+        Self {
+            instructions: Instructions::detect(),
+            ..Self::build_portable(world, options)
+        }
+    }
+
+    /// The same, traced without instructions that not every processor has. The answers are the same; for tests.
+    pub fn build_portable(world: &Arc<World>, options: &BuildOptions) -> Self {
+        let bins = match options.quality {
+            BuildQuality::Low => 8,
+            BuildQuality::Medium => 16,
+            BuildQuality::High => 32,
+        };
+        let groups = world.groups().par_iter();
+        let groups: Vec<_> = groups
+            .map(|members| GroupTrees::build(world, members, &[], bins))
+            .collect();
+        let boxes: Vec<_> = (0..world.groups().len())
+            .into_par_iter()
+            .map(|group| world.group_bounds(GroupId::from_index(group)))
+            .collect();
+        let instances: Vec<_> = world
+            .instances()
+            .par_iter()
+            .map(|instance| instance.world_from_object.moving_bounds(&boxes[instance.group.index()]))
+            .collect();
+        Self {
+            scene: Scene {
+                top: GroupTrees::build(world, world.root(), &instances, bins),
+                groups,
+                filtered: world
+                    .geometries()
+                    .iter()
+                    .map(|g| g.opacity == Opacity::Filtered)
+                    .collect(),
+                world: Arc::clone(world),
+            },
+            instructions: Instructions::Portable(Portable),
+        }
+    }
+}
+
+impl Instructions {
+    fn detect() -> Self {
+        Self::Portable(Portable)
+    }
+}
+
+impl Scene {
+    /// Traces one lane of a packet; `None` if it takes no part.
+    #[inline(always)]
+    fn trace<'a, K: Kernel, const ANY: bool>(
+        &'a self,
+        kernel: K,
+        packet: &RayPacket,
+        lane: usize,
+        filter: Option<&'a dyn HitFilter>,
+        stack: &mut [u64; STACK],
+    ) -> Option<Query<'a>> {
+        if !packet.is_active(lane) {
+            return None;
+        }
+        let ray = packet.get(lane);
+        let scale = direction_scale(ray.direction);
+        let mut query = Query::new(&ray, scale, filter, &self.filtered);
+        let local = LocalRay::new(ray.origin, ray.direction * scale);
+        let level = Level {
+            trees: &self.top,
+            instance: HitPacket::NONE,
+        };
+        kernel.group::<ANY>(self, &level, &local, &mut query, stack);
+        Some(query)
+    }
+
+    fn intersect<K: Kernel>(
+        &self,
+        kernel: K,
+        rays: &[RayPacket],
+        hits: &mut [HitPacket],
+        filter: Option<&dyn HitFilter>,
+    ) {
+        let mut stack = [0; STACK];
+        for (packet, hits) in rays.iter().zip(hits) {
+            *hits = HitPacket {
+                t: packet.tfar,
+                ..HitPacket::EMPTY
+            };
+            for lane in 0..LANES {
+                if let Some(query) = self.trace::<K, false>(kernel, packet, lane, filter, &mut stack) {
+                    query.store(hits, lane);
+                }
+            }
+        }
+    }
+
+    fn occluded<K: Kernel>(&self, kernel: K, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+        let mut stack = [0; STACK];
+        for packet in rays {
+            for lane in 0..LANES {
+                if let Some(query) = self.trace::<K, true>(kernel, packet, lane, filter, &mut stack)
+                    && query.is_hit()
+                {
+                    packet.tfar[lane] = f32::NEG_INFINITY;
+                }
+            }
+        }
     }
 }
 
 impl Accel for Bvh {
-    fn intersect(&self, _: RayKind, _: &[RayPacket], _: &mut [HitPacket], _: Option<&dyn HitFilter>) {}
-    fn occluded(&self, _: RayKind, _: &mut [RayPacket], _: Option<&dyn HitFilter>) {}
-    fn is_mate_independent(&self, _: RayKind) -> bool {
+    fn intersect(&self, _kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
+        assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
+        match self.instructions {
+            Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
+        }
+    }
+
+    fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+        match self.instructions {
+            Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),
+        }
+    }
+
+    fn is_mate_independent(&self, _kind: RayKind) -> bool {
         true
     }
+
     fn info(&self) -> AccelInfo {
+        let groups = self.scene.groups.iter().map(GroupTrees::memory).sum::<usize>();
         AccelInfo {
-            backend: super::Backend::Bvh,
-            version: String::new(),
-            memory: 0,
+            backend: Backend::Bvh,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            memory: self.scene.top.memory() + groups,
         }
     }
 }

@@ -1,0 +1,106 @@
+//! The two tests that a kernel does many at a time, and the portable kernel.
+
+use super::Scene;
+use super::leaf::{BlockIds, Corners, LANES};
+use super::node::{Planes, WIDTH};
+use super::query::Query;
+use super::ray::{LocalRay, Slab};
+use super::traverse::{self, Level};
+use super::triangle::{Shear, greatest, least};
+
+/// Which of eight boxes a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct BoxHits {
+    /// A bit for each.
+    pub mask: u32,
+    /// Where it enters them; meaningless for those that it misses.
+    pub entry: [f32; WIDTH],
+}
+
+/// Which of four triangles a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleHits {
+    /// A bit for each.
+    pub mask: u32,
+    /// Distances; meaningless for those that it misses.
+    pub t: [f32; LANES],
+}
+
+/// A set of instructions to trace with. All kernels give the same bits.
+pub trait Kernel: Copy + Send + Sync {
+    /// Which of eight boxes a ray meets in [tnear, tfar].
+    fn boxes(self, planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits;
+
+    /// Which of four triangles whose mask shares a bit with `mask` a ray meets in [tnear, tfar].
+    fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits;
+
+    /// [`traverse::group`] compiled for this kernel.
+    fn group<const ANY: bool>(
+        self,
+        scene: &Scene,
+        level: &Level,
+        ray: &LocalRay,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool;
+}
+
+/// Plain Rust, for any processor.
+#[derive(Clone, Copy, Debug)]
+pub struct Portable;
+
+impl Kernel for Portable {
+    #[inline(always)]
+    fn boxes(self, planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
+        let mut entry = [tnear; WIDTH];
+        let mut exit = [tfar; WIDTH];
+        for axis in 0..3 {
+            let near = &planes.0[2 * axis + slab.negative[axis]];
+            let far = &planes.0[2 * axis + 1 - slab.negative[axis]];
+            for slot in 0..WIDTH {
+                // A NaN, zero times infinity, leaves the distance so far: it takes no box away.
+                let enter = (near[slot] - slab.near_origin[axis]) * slab.near_scale[axis];
+                entry[slot] = greatest(enter, entry[slot]);
+                let leave = (far[slot] - slab.far_origin[axis]) * slab.far_scale[axis];
+                exit[slot] = least(leave, exit[slot]);
+            }
+        }
+        let hit = |mask, slot: usize| mask | u32::from(entry[slot] <= exit[slot]) << slot;
+        BoxHits {
+            mask: (0..WIDTH).fold(0, hit),
+            entry,
+        }
+    }
+
+    #[inline(always)]
+    fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
+        let mut hits = TriangleHits {
+            mask: 0,
+            t: [0.0; LANES],
+        };
+        for lane in 0..LANES {
+            if ids.mask[lane] & mask == 0 {
+                continue;
+            }
+            if let Some(t) = shear.corners(&corners.lane(lane)).distance()
+                && t >= range[0]
+                && t <= range[1]
+            {
+                hits.mask |= 1 << lane;
+                hits.t[lane] = t;
+            }
+        }
+        hits
+    }
+
+    fn group<const ANY: bool>(
+        self,
+        scene: &Scene,
+        level: &Level,
+        ray: &LocalRay,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool {
+        traverse::group::<Self, ANY>(self, scene, level, ray, query, stack)
+    }
+}

@@ -1,0 +1,130 @@
+//! What is asked of a ray, and the nearest hit so far.
+
+use super::ray::LocalRay;
+use crate::accel::{FilterHit, HitFilter};
+use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Sphere};
+
+/// A box that begins farther than the nearest hit by more than this, relatively, is passed over; one at the same distance never
+/// is, as the distances of a box and of what is in it are rounded differently and equal distances are decided by ids.
+const CULL_SLACK: f32 = 1.0 + 16.0 * f32::EPSILON;
+
+/// The state of one ray's query.
+pub struct Query<'a> {
+    /// Hits nearer do not count.
+    pub tnear: f32,
+    /// Distance of the nearest hit so far, at first the ray's end.
+    pub tfar: f32,
+    /// Boxes beyond this are passed over.
+    pub cull: f32,
+    /// Ids of the nearest hit so far: geometry, primitive, instance; [`HitPacket::NONE`] for none.
+    pub ids: [u32; 3],
+    /// The ray's mask.
+    pub mask: u32,
+    /// The ray's time.
+    pub time: f32,
+    ray_id: u32,
+    /// Distances are those of the ray divided by this.
+    scale: f32,
+    filter: Option<&'a dyn HitFilter>,
+    /// Of each geometry, whether hits on it are filtered.
+    filtered: &'a [bool],
+}
+
+/// A hit to be compared with the nearest so far.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// Distance.
+    pub t: f32,
+    /// Index of the geometry.
+    pub geometry: u32,
+    /// Index of the primitive.
+    pub primitive: u32,
+    /// Index of the instance, or [`HitPacket::NONE`].
+    pub instance: u32,
+}
+
+impl<'a> Query<'a> {
+    /// A query of `ray`, along its direction times `scale`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, scale: f32, filter: Option<&'a dyn HitFilter>, filtered: &'a [bool]) -> Self {
+        let tfar = ray.tfar / scale;
+        Self {
+            // Adding zero turns a negative zero into a positive one, whose bits compare as an integer.
+            tnear: ray.tnear / scale + 0.0,
+            tfar,
+            cull: tfar * CULL_SLACK,
+            ids: [HitPacket::NONE; 3],
+            mask: ray.mask,
+            time: ray.time,
+            ray_id: ray.id,
+            scale,
+            filter,
+            filtered,
+        }
+    }
+
+    /// Whether anything was hit.
+    #[inline(always)]
+    pub fn is_hit(&self) -> bool {
+        self.ids[0] != HitPacket::NONE
+    }
+
+    /// Takes a candidate in [tnear, tfar] if it precedes the nearest hit so far by (t, geometry, primitive, instance) and the
+    /// filter accepts it; says whether it did. `uv` is asked only for a filter.
+    #[inline(always)]
+    pub fn offer(&mut self, candidate: &Candidate, uv: impl FnOnce() -> [f32; 2]) -> bool {
+        let ids = [candidate.geometry, candidate.primitive, candidate.instance];
+        let precedes = candidate.t < self.tfar || (candidate.t == self.tfar && ids < self.ids);
+        if !precedes || !self.accepts(candidate, uv) {
+            return false;
+        }
+        self.tfar = candidate.t;
+        self.cull = candidate.t * CULL_SLACK;
+        self.ids = ids;
+        true
+    }
+
+    /// Whether a distance is in [tnear, tfar].
+    #[inline(always)]
+    pub fn contains(&self, t: f32) -> bool {
+        t >= self.tnear && t <= self.tfar
+    }
+
+    /// Offers the hits with a sphere, the farther if the filter takes away the nearer.
+    #[inline(always)]
+    pub fn offer_sphere(&mut self, sphere: &Sphere, ray: &LocalRay, candidate: impl Fn(f32) -> Candidate) -> bool {
+        let Some(hits) = sphere.intersect(ray.origin.as_dvec3(), ray.direction.as_dvec3()) else {
+            return false;
+        };
+        let range = f64::from(self.tnear)..=f64::from(self.tfar);
+        let mut distances = [hits.enter, hits.leave].into_iter().filter(|t| range.contains(t));
+        distances.any(|t| self.offer(&candidate(t as f32), || [0.0; 2]))
+    }
+
+    /// Whether the filter, if any, accepts a candidate.
+    #[inline(always)]
+    fn accepts(&self, candidate: &Candidate, uv: impl FnOnce() -> [f32; 2]) -> bool {
+        match self.filter {
+            Some(filter) if self.filtered[candidate.geometry as usize] => {
+                let [u, v] = uv();
+                filter.accept(&FilterHit {
+                    geometry: GeometryId(candidate.geometry),
+                    primitive: PrimitiveId(candidate.primitive),
+                    instance: (candidate.instance != HitPacket::NONE).then_some(InstanceId(candidate.instance)),
+                    u,
+                    v,
+                    t: candidate.t * self.scale,
+                    ray_id: self.ray_id,
+                })
+            }
+            _ => true,
+        }
+    }
+
+    /// Writes the answer into a lane.
+    #[inline(always)]
+    pub fn store(&self, hits: &mut HitPacket, lane: usize) {
+        [hits.geometry[lane], hits.primitive[lane], hits.instance[lane]] = self.ids;
+        hits.t[lane] = self.tfar * self.scale;
+    }
+}

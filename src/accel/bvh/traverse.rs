@@ -1,0 +1,221 @@
+//! The traversal: nearest children first, the others on a stack with their distances.
+
+use super::Scene;
+use super::kernel::{BoxHits, Kernel};
+use super::leaf::{Block, Corners};
+use super::node::{Child, ChildRef, Node, Planes, WIDTH};
+use super::query::{Candidate, Query};
+use super::ray::LocalRay;
+use super::tree::{GroupTrees, Tree, mesh};
+use crate::geometry::{HitPacket, InstanceId, Shape};
+
+use super::build::MOST_LEVELS;
+
+/// Entries of a stack: each level leaves at most seven children of its node on it, and an instance has a tree of its own.
+pub const STACK: usize = 2 * (MOST_LEVELS as usize * (WIDTH - 1) + 1);
+
+/// Which trees a ray is in.
+#[derive(Clone, Copy)]
+pub struct Level<'a> {
+    /// The trees.
+    pub trees: &'a GroupTrees,
+    /// The instance they are seen through, or [`HitPacket::NONE`].
+    pub instance: u32,
+}
+
+/// Traces a ray through the trees of a group: the nearest hit into `query`, or with `ANY` whether there is any.
+#[inline(always)]
+pub fn group<K: Kernel, const ANY: bool>(
+    kernel: K,
+    scene: &Scene,
+    level: &Level,
+    ray: &LocalRay,
+    query: &mut Query,
+    stack: &mut [u64],
+) -> bool {
+    let mut walk = Walk {
+        kernel,
+        scene,
+        level,
+        ray,
+    };
+    if let Some(tree) = &level.trees.fixed
+        && walk.tree::<_, _, ANY>(tree, 0.0, query, stack)
+    {
+        return true;
+    }
+    for moving in &level.trees.moving {
+        let (segment, fraction) = mesh(&scene.world, moving.sample).map_or((0, 0.0), |mesh| mesh.time_step(query.time));
+        if let Some(tree) = moving.segments.get(segment)
+            && walk.tree::<_, _, ANY>(tree, fraction, query, stack)
+        {
+            return true;
+        }
+    }
+    false
+}
+
+/// What stays the same while a ray goes through a group.
+struct Walk<'a, K> {
+    kernel: K,
+    scene: &'a Scene,
+    level: &'a Level<'a>,
+    ray: &'a LocalRay,
+}
+
+impl<K: Kernel> Walk<'_, K> {
+    #[inline(always)]
+    fn tree<N: Node, B: Block, const ANY: bool>(
+        &mut self,
+        tree: &Tree<N, B>,
+        fraction: f32,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool {
+        let mut planes = Planes::scratch();
+        let mut corners = Corners::scratch();
+        let mut depth = 0;
+        let mut current = ChildRef::ROOT;
+        loop {
+            let found = match current.get() {
+                Child::Node(index) => {
+                    let node = &tree.nodes[index];
+                    let planes = node.planes(fraction, &mut planes);
+                    let hits = self.kernel.boxes(planes, &self.ray.slab, query.tnear, query.cull);
+                    if hits.mask != 0 {
+                        current = push::<ANY>(&hits, node.children(), stack, &mut depth);
+                        continue;
+                    }
+                    false
+                }
+                Child::Block(index) => {
+                    let block = &tree.blocks[index];
+                    let corners = block.corners(fraction, &mut corners);
+                    self.block::<_, ANY>(block, corners, query)
+                }
+                Child::Sphere(index) => {
+                    let (geometry, primitive) = tree.spheres[index];
+                    self.sphere(geometry.0, primitive.0, query)
+                }
+                Child::Instance(index) => self.instance::<ANY>(index, query, &mut stack[depth..]),
+            };
+            if ANY && found {
+                return true;
+            }
+            // The nearest of what is left, unless it begins behind the nearest hit.
+            loop {
+                if depth == 0 {
+                    return false;
+                }
+                depth -= 1;
+                let entry = stack[depth];
+                if ANY || f32::from_bits((entry >> 32) as u32) <= query.cull {
+                    current = ChildRef(entry as u32);
+                    break;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn block<B: Block, const ANY: bool>(&self, block: &B, corners: &Corners, query: &mut Query) -> bool {
+        let ids = block.ids();
+        let range = [query.tnear, query.tfar];
+        let hits = self.kernel.triangles(corners, ids, query.mask, &self.ray.shear, range);
+        let mut rest = hits.mask;
+        let mut found = false;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let candidate = Candidate {
+                t: hits.t[lane],
+                geometry: ids.geometry[lane],
+                primitive: ids.primitive[lane],
+                instance: self.level.instance,
+            };
+            found |= query.offer(&candidate, || corners.barycentrics(lane, self.ray));
+            if ANY && found {
+                return true;
+            }
+        }
+        found
+    }
+
+    #[inline(never)]
+    fn sphere(&self, geometry: u32, primitive: u32, query: &mut Query) -> bool {
+        let member = &self.scene.world.geometries()[geometry as usize];
+        let Shape::Spheres(spheres) = &member.shape else {
+            return false;
+        };
+        if member.mask & query.mask == 0 {
+            return false;
+        }
+        let candidate = |t| Candidate {
+            t,
+            geometry,
+            primitive,
+            instance: self.level.instance,
+        };
+        query.offer_sphere(&spheres[primitive as usize], self.ray, candidate)
+    }
+
+    #[inline(always)]
+    fn instance<const ANY: bool>(&self, index: usize, query: &mut Query, stack: &mut [u64]) -> bool {
+        let id = InstanceId::from_index(index);
+        let instance = self.scene.world.instance(id);
+        if instance.mask & query.mask == 0 {
+            return false;
+        }
+        let object_from_world = instance.world_from_object.inverse_at(query.time);
+        let origin = object_from_world.transform_point3(self.ray.origin.as_dvec3());
+        let direction = object_from_world.transform_vector3(self.ray.direction.as_dvec3());
+        let ray = LocalRay::new(origin.as_vec3(), direction.as_vec3());
+        let level = Level {
+            trees: &self.scene.groups[instance.group.index()],
+            instance: id.0,
+        };
+        debug_assert_eq!(self.level.instance, HitPacket::NONE);
+        self.kernel.group::<ANY>(self.scene, &level, &ray, query, stack)
+    }
+}
+
+/// Puts all children that are hit but one on the stack and returns that one: the nearest, or with `ANY` any. The entries come
+/// off the stack nearest first.
+#[inline(always)]
+fn push<const ANY: bool>(
+    hits: &BoxHits,
+    children: &[ChildRef; WIDTH],
+    stack: &mut [u64],
+    depth: &mut usize,
+) -> ChildRef {
+    let mut rest = hits.mask;
+    let mut take = || {
+        let slot = rest.trailing_zeros() as usize;
+        rest &= rest - 1;
+        // Distances are not negative: their bits have the order of their values.
+        (
+            u64::from(hits.entry[slot].to_bits()) << 32 | u64::from(children[slot].0),
+            rest != 0,
+        )
+    };
+    let (mut nearest, mut more) = take();
+    let first = *depth;
+    while more {
+        let entry;
+        (entry, more) = take();
+        if ANY {
+            stack[*depth] = entry;
+        } else {
+            let far = nearest.max(entry);
+            nearest = nearest.min(entry);
+            let mut place = *depth;
+            while place > first && stack[place - 1] < far {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = far;
+        }
+        *depth += 1;
+    }
+    ChildRef(nearest as u32)
+}

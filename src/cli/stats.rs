@@ -1,0 +1,62 @@
+//! What a finished render says about itself.
+
+use serde::Serialize;
+
+/// The statistics of one render, as `--stats` and `--json` write them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Statistics {
+    /// The scene file.
+    pub scene: String,
+    /// Name of the view.
+    pub camera: String,
+    /// The image file.
+    pub output: String,
+    /// Pixels of the whole picture.
+    pub resolution: [u32; 2],
+    /// `x0, y0, x1, y1` of the pixels rendered.
+    pub crop: [u32; 4],
+    /// Its name on the command line.
+    pub integrator: &'static str,
+    /// `spectral` or `rgb`.
+    pub color: &'static str,
+    /// Its name on the command line.
+    pub backend: String,
+    /// Version of the Embree library, or of Lucerna.
+    pub backend_version: String,
+    /// Threads that rendered.
+    pub threads: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Samples a pixel.
+    pub spp: u32,
+    /// From the start of loading the scene (for a later camera of a scene: of its own render) to the image on the disk.
+    pub wall_seconds: f64,
+    /// Reading and understanding the scene file.
+    pub load_seconds: f64,
+    /// Building the backend's structures.
+    pub build_seconds: f64,
+    /// Rendering alone.
+    pub render_seconds: f64,
+    /// Thread time inside the backend's queries.
+    pub backend_thread_seconds: f64,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// All rays.
+    pub rays: u64,
+    /// All rays over the render's seconds.
+    pub rays_per_second: f64,
+    /// Most memory that the process had so far; 0 where the system does not tell.
+    pub peak_memory_bytes: u64,
+    /// Samples that counted as black because they were not finite or negative.
+    pub dropped_samples: u64,
+}
+
+/// Most resident memory that this process had so far; 0 where the system does not tell.
+pub fn peak_memory_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|rest| rest.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}

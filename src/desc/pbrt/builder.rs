@@ -1,0 +1,342 @@
+//! Carries out directives: keeps the graphics state and gathers what the scene consists of.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::files::Context;
+use super::options::Options;
+use super::params::Param;
+use super::reader::{ParamReader, unknown_type};
+use super::state::{Block, GraphicsState, Saved};
+use super::world::{RawInstance, RawShape, World};
+use super::{light, material, shape};
+use crate::desc::MotionDesc;
+use crate::error::Span;
+
+pub(super) use super::options::OptionKind;
+
+/// A scene in the making.
+#[derive(Debug)]
+pub(super) struct Builder {
+    pub context: Context,
+    pub state: GraphicsState,
+    pub options: Options,
+    pub world: World,
+    saved: Vec<Saved>,
+    coordinate_systems: HashMap<String, MotionDesc>,
+    in_world: bool,
+}
+
+impl Builder {
+    pub fn new(context: Context) -> Self {
+        Self {
+            context,
+            state: GraphicsState::new(),
+            options: Options::default(),
+            world: World::default(),
+            saved: Vec::new(),
+            coordinate_systems: HashMap::new(),
+            in_world: false,
+        }
+    }
+
+    /// Whether the world has begun; if not, says that `what` must wait for it.
+    pub fn expect_world(&mut self, what: &str, span: Span) -> bool {
+        if !self.in_world {
+            let message = format!("`{what}` is allowed only after `WorldBegin`");
+            self.context.report.error(span, message);
+        }
+        self.in_world
+    }
+
+    fn expect_options(&mut self, what: &str, span: Span) -> bool {
+        if self.in_world {
+            let message = format!("`{what}` is allowed only before `WorldBegin`");
+            self.context.report.error(span, message);
+        }
+        !self.in_world
+    }
+
+    /// `Camera`, `Film` and the like.
+    pub fn option(&mut self, kind: OptionKind, name: &str, name_span: Span, params: Vec<Param>, span: Span) {
+        if !self.expect_options(kind.directive(), span) {
+            return;
+        }
+        if kind == OptionKind::Camera {
+            let world_from_camera = self.state.ctm.inverse();
+            self.coordinate_systems.insert("camera".to_owned(), world_from_camera);
+        }
+        let ctm = self.state.ctm;
+        self.options
+            .read(&mut self.context, kind, (name, name_span), params, span, ctm);
+    }
+
+    pub fn transform_times(&mut self, start: f64, end: f64, span: Span) {
+        if !self.expect_options("TransformTimes", span) {
+            return;
+        }
+        if start < end {
+            self.options.transform_times = [start, end];
+        } else {
+            let message = "the first of the transform times must come before the second";
+            self.context.report.error(span, message);
+        }
+    }
+
+    pub fn render_option(&mut self, name: &str, value: &str, span: Span) {
+        super::options::render_option(&mut self.context.report, name, value, span);
+    }
+
+    pub fn world_begin(&mut self, span: Span) {
+        if !self.expect_options("WorldBegin", span) {
+            return;
+        }
+        self.in_world = true;
+        self.state.ctm = MotionDesc::IDENTITY;
+        self.state.active = [true; 2];
+        self.coordinate_systems.insert("world".to_owned(), MotionDesc::IDENTITY);
+    }
+
+    pub fn coordinate_system(&mut self, name: String) {
+        self.coordinate_systems.insert(name, self.state.ctm);
+    }
+
+    pub fn coord_sys_transform(&mut self, name: &str, span: Span) {
+        if let Some(&ctm) = self.coordinate_systems.get(name) {
+            self.state.ctm = ctm;
+        } else {
+            let known: Vec<&str> = self.coordinate_systems.keys().map(String::as_str).collect();
+            let message = format!("there is no coordinate system `{name}`");
+            let instead = "the current transform is kept";
+            self.context.report.unknown(span, message, instead, name, &known);
+        }
+    }
+
+    pub fn color_space(&mut self, name: &str, span: Span) {
+        let class = (&["srgb"][..], &["dci-p3", "rec2020", "aces2065-1"][..]);
+        if name != "srgb" {
+            unknown_type(
+                &mut self.context.report,
+                "color space",
+                name,
+                span,
+                class,
+                "sRGB is used",
+            );
+        }
+    }
+
+    pub fn attribute_begin(&mut self, span: Span) {
+        if self.expect_world("AttributeBegin", span) {
+            self.save(Block::Attribute, span);
+        }
+    }
+
+    pub fn attribute_end(&mut self, span: Span) {
+        if self.expect_world("AttributeEnd", span) {
+            self.restore(Block::Attribute, "AttributeEnd", span);
+        }
+    }
+
+    fn save(&mut self, why: Block, span: Span) {
+        self.saved.push(Saved {
+            state: self.state.clone(),
+            why,
+            span,
+        });
+    }
+
+    /// Goes back to the last saved state if it was saved for the same reason; otherwise complains.
+    fn restore(&mut self, why: Block, directive: &str, span: Span) {
+        match self.saved.pop() {
+            Some(saved) if saved.why == why => self.state = saved.state,
+            other => {
+                let open = match other.as_ref().map(|s| s.why) {
+                    Some(Block::Attribute) => "what was begun last is `AttributeBegin`",
+                    Some(Block::Object) => "what was begun last is `ObjectBegin`",
+                    Some(Block::Import) | None => "nothing has been begun in this file",
+                };
+                self.saved.extend(other);
+                self.context
+                    .report
+                    .error(span, format!("`{directive}` without a matching begin: {open}"));
+            }
+        }
+    }
+
+    pub fn reverse_orientation(&mut self, span: Span) {
+        if self.expect_world("ReverseOrientation", span) {
+            self.state.reverse_orientation = !self.state.reverse_orientation;
+        }
+    }
+
+    pub fn object_begin(&mut self, name: String, name_span: Span, span: Span) {
+        if !self.expect_world("ObjectBegin", span) {
+            return;
+        }
+        if let Some(problem) = self.world.begin_object(name, name_span) {
+            self.context.report.error(name_span, problem);
+        }
+        self.save(Block::Object, span);
+    }
+
+    pub fn object_end(&mut self, span: Span) {
+        if self.expect_world("ObjectEnd", span) {
+            self.restore(Block::Object, "ObjectEnd", span);
+            if !self.saved.iter().any(|s| s.why == Block::Object) {
+                self.world.end_object();
+            }
+        }
+    }
+
+    pub fn object_instance(&mut self, name: String, span: Span) {
+        if !self.expect_world("ObjectInstance", span) {
+            return;
+        }
+        if self.world.is_in_object() {
+            let message = "`ObjectInstance` is not allowed between `ObjectBegin` and `ObjectEnd`";
+            self.context.report.error(span, message);
+            return;
+        }
+        self.world.instances.push(RawInstance {
+            name,
+            span,
+            world_from_instance: self.state.ctm,
+        });
+    }
+
+    pub fn named_material(&mut self, name: String, span: Span) {
+        if self.expect_world("NamedMaterial", span) {
+            self.state.material = self.world.materials.named(name, span);
+        }
+    }
+
+    /// A directive with a type and parameters inside the world.
+    pub fn entity(&mut self, directive: &str, name: String, name_span: Span, params: Vec<Param>, span: Span) {
+        if directive != "Attribute" && directive != "MakeNamedMedium" && !self.expect_world(directive, span) {
+            return;
+        }
+        let defaults = &self.state.defaults;
+        let (class, defaults) = match directive {
+            "Material" => ("material", Arc::clone(&defaults.material)),
+            "MakeNamedMaterial" => ("named material", Arc::clone(&defaults.material)),
+            "LightSource" => ("light", Arc::clone(&defaults.light)),
+            "AreaLightSource" => ("area light", Arc::clone(&defaults.light)),
+            "Shape" => ("shape", Arc::clone(&defaults.shape)),
+            "Attribute" => return self.set_defaults(&name, name_span, params),
+            _ => {
+                let report = &mut self.context.report;
+                return report.unsupported(span, "participating media are not supported yet", "it is ignored");
+            }
+        };
+        let reader = ParamReader::new(&mut self.context, class, &name, name_span, params, &defaults);
+        match directive {
+            "Material" => self.state.material = self.world.materials.add(material::read(reader, &name, None)),
+            "MakeNamedMaterial" => {
+                let material = material::read_named(reader);
+                if let Some(problem) = self.world.materials.define(name, name_span, material) {
+                    self.context.report.error(name_span, problem);
+                }
+            }
+            "LightSource" => self.world.lights.extend(light::read(reader, &name, self.state.ctm)),
+            "AreaLightSource" => self.state.area_light = light::read_area(reader, &name).map(Arc::new),
+            _ => {
+                if let Some(kind) = shape::read(reader, &name, &mut self.world.meshes) {
+                    self.shape(kind, name_span);
+                }
+            }
+        }
+    }
+
+    fn shape(&mut self, kind: shape::RawKind, span: Span) {
+        let in_object = self.world.is_in_object();
+        let mut area_light = self.state.area_light.clone();
+        if in_object && area_light.is_some() {
+            let report = &mut self.context.report;
+            report.unsupported(
+                span,
+                "lights in an object, which may have many instances, are not supported (nor are they in pbrt)",
+                "this shape does not emit",
+            );
+            area_light = None;
+        }
+        self.world.add_shape(RawShape {
+            span,
+            kind,
+            world_from_object: self.state.ctm,
+            reverse_orientation: self.state.reverse_orientation,
+            material: self.state.material,
+            area_light,
+        });
+    }
+
+    fn set_defaults(&mut self, target: &str, span: Span, params: Vec<Param>) {
+        let defaults = &mut self.state.defaults;
+        let (target, of_target) = match target {
+            "shape" => ("shape", &mut defaults.shape),
+            "light" => ("light", &mut defaults.light),
+            "material" => ("material", &mut defaults.material),
+            "medium" | "texture" => return,
+            _ => {
+                let known = ["shape", "light", "material", "medium", "texture"];
+                let message = format!("unknown target `{target}` of `Attribute`");
+                let report = &mut self.context.report;
+                report.unknown(span, message, "it is ignored", target, &known);
+                return;
+            }
+        };
+        let of_target = Arc::make_mut(of_target);
+        for param in params {
+            let number = self.context.add_default(target, &param.name, param.span);
+            of_target.retain(|p| p.name != param.name);
+            of_target.push(Param {
+                default: Some(number),
+                ..param
+            });
+        }
+    }
+
+    /// A file has been opened by `Import`, whose argument is at `span`.
+    pub fn import_begin(&mut self, span: Span) {
+        self.save(Block::Import, span);
+    }
+
+    /// A file that `Import` opened has ended.
+    pub fn import_end(&mut self) {
+        while let Some(saved) = self.saved.pop() {
+            let is_import = saved.why == Block::Import;
+            if !is_import {
+                self.unclosed(&saved);
+            }
+            self.state = saved.state;
+            if is_import {
+                break;
+            }
+        }
+    }
+
+    /// The main file has ended; `end` is there.
+    pub fn end(&mut self, end: Span) {
+        while let Some(saved) = self.saved.pop() {
+            self.unclosed(&saved);
+        }
+        if !self.in_world {
+            let message = "the file ends before `WorldBegin`: it describes no scene";
+            self.context.report.error(end, message);
+        }
+    }
+
+    fn unclosed(&mut self, saved: &Saved) {
+        let missing = match saved.why {
+            Block::Attribute => "`AttributeEnd`",
+            Block::Object => {
+                self.world.end_object();
+                "`ObjectEnd`"
+            }
+            Block::Import => return,
+        };
+        self.context
+            .report
+            .error(saved.span, format!("the {missing} for this is missing"));
+    }
+}

@@ -1,0 +1,106 @@
+//! `Camera`.
+
+use super::params::ParamType;
+use super::reader::{ParamReader, unknown_type};
+use crate::desc::{CameraDesc, CameraKind, MotionDesc};
+use crate::error::Span;
+
+const KNOWN: [&str; 2] = ["perspective", "orthographic"];
+const LATER: [&str; 2] = ["realistic", "spherical"];
+
+/// A camera and the name of its view, if it has one.
+#[derive(Clone, Debug)]
+pub(super) struct NamedCamera {
+    pub name: Option<(String, Span)>,
+    pub camera: CameraDesc,
+    pub span: Span,
+}
+
+/// The camera of a file without one.
+pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
+    CameraDesc {
+        kind: CameraKind::Perspective {
+            fov: 90.0,
+            near_clip: 0.0,
+        },
+        screen: None,
+        frame_aspect: None,
+        lens_radius: 0.0,
+        focal_distance: 1e6,
+        shutter: [0.0, 1.0],
+        world_from_camera,
+    }
+}
+
+/// Reads a camera; one of another type becomes a perspective one.
+pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_camera: MotionDesc) -> NamedCamera {
+    let span = reader.span;
+    let default = default_camera(world_from_camera);
+    let kind = match kind {
+        "perspective" => CameraKind::Perspective {
+            fov: reader.float_in("fov", 90.0, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees"),
+            near_clip: reader.not_negative("nearclip", 0.0),
+        },
+        "orthographic" => CameraKind::Orthographic,
+        _ => {
+            let classes = (&KNOWN[..], &LATER[..]);
+            let instead = "a perspective one with default parameters stands in";
+            unknown_type(reader.report(), "camera", kind, span, classes, instead);
+            return NamedCamera {
+                name: None,
+                camera: default,
+                span,
+            };
+        }
+    };
+    let camera = CameraDesc {
+        kind,
+        screen: screen_window(&mut reader),
+        frame_aspect: reader
+            .has("frameaspectratio")
+            .then(|| reader.positive("frameaspectratio", 1.0)),
+        lens_radius: reader.not_negative("lensradius", 0.0),
+        focal_distance: reader.positive("focaldistance", default.focal_distance),
+        shutter: shutter(&mut reader),
+        world_from_camera,
+    };
+    let name = view_name(&mut reader);
+    reader.finish();
+    NamedCamera { name, camera, span }
+}
+
+fn screen_window(reader: &mut ParamReader<'_>) -> Option<[f64; 4]> {
+    let v = reader.numbers("screenwindow", ParamType::Float, 4)?;
+    let window = [v[0], v[1], v[2], v[3]];
+    if window[0] == window[1] || window[2] == window[3] {
+        let span = reader.span_of("screenwindow");
+        reader.report().error(span, "the screen window is empty");
+        return None;
+    }
+    Some(window)
+}
+
+fn shutter(reader: &mut ParamReader<'_>) -> [f64; 2] {
+    let open = reader.float("shutteropen").unwrap_or(0.0);
+    let close = reader.float("shutterclose").unwrap_or(1.0);
+    if open < close {
+        return [open, close];
+    }
+    let span = reader.span_of("shutterclose");
+    let message = format!("the shutter closes at {close}, which must be after it opens, at {open}");
+    reader.report().error(span, message);
+    [0.0, 1.0]
+}
+
+/// The name of the view; it may become a part of a file name.
+fn view_name(reader: &mut ParamReader<'_>) -> Option<(String, Span)> {
+    let (name, span) = reader.string("name")?;
+    let fit = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ');
+    if name.trim().is_empty() || name.starts_with('.') || !name.chars().all(fit) {
+        let message =
+            "the name of a view has letters, digits, spaces, `-`, `_` and `.` only, and does not start with `.`";
+        reader.report().error(span, message);
+        return None;
+    }
+    Some((name, span))
+}

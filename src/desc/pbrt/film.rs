@@ -1,0 +1,209 @@
+//! `Film`, `PixelFilter` and `Sampler`.
+
+use std::path::PathBuf;
+
+use super::params::ParamType;
+use super::reader::{ParamReader, unknown_type};
+use crate::desc::{CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, SamplerKind};
+use crate::error::Span;
+
+/// The film of a file without one.
+pub(super) fn default_film(span: Span) -> FilmDesc {
+    FilmDesc {
+        resolution: [1280, 720],
+        crop: CropDesc::Full,
+        filename: None,
+        iso: 100.0,
+        exposure_time: 1.0,
+        span,
+    }
+}
+
+/// Reads a film; one of another type becomes an RGB one. The exposure time is the camera's to say.
+pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
+    let span = reader.span;
+    if kind != "rgb" {
+        let classes = (&["rgb"][..], &["gbuffer", "spectral"][..]);
+        unknown_type(reader.report(), "film", kind, span, classes, "an RGB film stands in");
+    }
+    let mut side = |name, default| {
+        let valid = |v: i32| (1..=1 << 20).contains(&v);
+        let value = reader.integer_in(name, default, valid, "between 1 and 1048576");
+        value.unsigned_abs()
+    };
+    let resolution = [side("xresolution", 1280), side("yresolution", 720)];
+    let film = FilmDesc {
+        resolution,
+        crop: crop(&mut reader, resolution),
+        filename: reader.string("filename").map(|(name, _)| PathBuf::from(name)),
+        iso: reader.positive("iso", 100.0),
+        exposure_time: 1.0,
+        span,
+    };
+    sensor(&mut reader);
+    reader.inert(&[
+        ("diagonal", "it matters to realistic cameras only"),
+        ("savefp16", "images are saved with 32 bits"),
+    ]);
+    reader.unsupported(&["maxcomponentvalue"]);
+    reader.finish();
+    film
+}
+
+fn sensor(reader: &mut ParamReader<'_>) {
+    if let Some((name, span)) = reader.string("sensor")
+        && name != "cie1931"
+    {
+        let message = format!("the sensor `{name}` is not supported yet, only `cie1931`");
+        reader.report().unsupported(span, message, "`cie1931` is used");
+    }
+    let temperature = reader.not_negative("whitebalance", 0.0);
+    if temperature != 0.0 {
+        let span = reader.span_of("whitebalance");
+        let message = "white balancing is not supported yet";
+        reader.report().unsupported(span, message, "it is left out");
+    }
+}
+
+/// As in pbrt-v4, a crop window goes before pixel bounds, and both are clamped.
+fn crop(reader: &mut ParamReader<'_>, resolution: [u32; 2]) -> CropDesc {
+    let bounds = reader.integers("pixelbounds", 4);
+    let window = reader.numbers("cropwindow", ParamType::Float, 4);
+    let (name, crop) = match (window, bounds) {
+        (Some(w), bounds) => {
+            if bounds.is_some() {
+                let span = reader.span_of("pixelbounds");
+                reader
+                    .report()
+                    .warning(span, "`pixelbounds` has no effect: `cropwindow` goes first");
+            }
+            if w.iter().any(|v| !(0.0..=1.0).contains(v)) {
+                let span = reader.span_of("cropwindow");
+                let message = "`cropwindow` is clamped to between 0 and 1; did you mean `pixelbounds`?";
+                reader.report().warning(span, message);
+            }
+            let v = [0, 1, 2, 3].map(|i| w[i].clamp(0.0, 1.0) as f32);
+            let window = [v[0].min(v[1]), v[0].max(v[1]), v[2].min(v[3]), v[2].max(v[3])];
+            ("cropwindow", CropDesc::Window(window))
+        }
+        (None, Some(b)) => {
+            let [width, height] = resolution;
+            if b[0].min(b[2]) < 0 || i64::from(b[1]) > i64::from(width) || i64::from(b[3]) > i64::from(height) {
+                let span = reader.span_of("pixelbounds");
+                let message = "`pixelbounds` goes beyond the image and is clamped to it";
+                reader.report().warning(span, message);
+            }
+            let edge = |i: usize| b[i].max(0).unsigned_abs();
+            let rect = PixelRect {
+                x0: edge(0),
+                x1: edge(1).min(width),
+                y0: edge(2),
+                y1: edge(3).min(height),
+            };
+            ("pixelbounds", CropDesc::Pixels(rect))
+        }
+        (None, None) => return CropDesc::Full,
+    };
+    let pixels = crop.pixels(resolution);
+    if pixels.x0 >= pixels.x1 || pixels.y0 >= pixels.y1 {
+        let span = reader.span_of(name);
+        let message = format!("`{name}` leaves no pixel (its order is x0 x1 y0 y1)");
+        reader.report().error(span, message);
+        return CropDesc::Full;
+    }
+    crop
+}
+
+/// The filter of a file without one.
+pub(super) const DEFAULT_FILTER: FilterDesc = FilterDesc {
+    kind: FilterKind::Gaussian { sigma: 0.5 },
+    radius: [1.5, 1.5],
+};
+
+/// Reads a pixel filter; one of another type becomes the default.
+pub(super) fn read_filter(mut reader: ParamReader<'_>, kind: &str) -> FilterDesc {
+    const KNOWN: [&str; 6] = ["box", "triangle", "gaussian", "mitchell", "sinc", "blackmanharris"];
+    let third = 1.0 / 3.0;
+    let (radius, kind) = match kind {
+        "box" => (0.5, FilterKind::Box),
+        "triangle" => (2.0, FilterKind::Triangle),
+        "gaussian" => {
+            let sigma = reader.positive("sigma", 0.5);
+            (1.5, FilterKind::Gaussian { sigma })
+        }
+        "mitchell" => {
+            let b = reader.float("B").unwrap_or(third);
+            let c = reader.float("C").unwrap_or(third);
+            (2.0, FilterKind::Mitchell { b, c })
+        }
+        "sinc" => {
+            let tau = reader.positive("tau", 3.0);
+            (4.0, FilterKind::LanczosSinc { tau })
+        }
+        "blackmanharris" => (2.0, FilterKind::BlackmanHarris),
+        _ => {
+            let span = reader.span;
+            let instead = "a Gaussian stands in";
+            unknown_type(reader.report(), "filter", kind, span, (&KNOWN, &[]), instead);
+            return DEFAULT_FILTER;
+        }
+    };
+    let valid = |v: f64| v > 0.0 && v <= 64.0;
+    let mut side = |name| reader.float_in(name, radius, valid, "positive and at most 64 pixels");
+    let radius = [side("xradius"), side("yradius")];
+    reader.finish();
+    FilterDesc { kind, radius }
+}
+
+/// The sampler of a file without one.
+pub(super) const DEFAULT_SAMPLER: SamplerDesc = SamplerDesc {
+    kind: SamplerKind::Sobol,
+    pixel_samples: 16,
+};
+
+/// Reads a sampler. Those that pbrt has and Lucerna has not are replaced: what they converge to is the same.
+pub(super) fn read_sampler(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
+    const KNOWN: [&str; 7] = [
+        "independent",
+        "sobol",
+        "zsobol",
+        "paddedsobol",
+        "halton",
+        "stratified",
+        "pmj02bn",
+    ];
+    let span = reader.span;
+    let mut samples = |name, default| {
+        let valid = |v: i32| (1..=1 << 24).contains(&v);
+        reader
+            .integer_in(name, default, valid, "between 1 and 16777216")
+            .unsigned_abs()
+    };
+    let (sampler, pixel_samples) = match kind {
+        "independent" => (SamplerKind::Independent, samples("pixelsamples", 4)),
+        "stratified" => {
+            let product = samples("xsamples", 4).saturating_mul(samples("ysamples", 4));
+            (SamplerKind::Sobol, product)
+        }
+        _ => (SamplerKind::Sobol, samples("pixelsamples", 16)),
+    };
+    match kind {
+        "independent" | "sobol" | "zsobol" | "paddedsobol" => {}
+        "halton" | "stratified" | "pmj02bn" => {
+            let message =
+                format!("the sampler `{kind}` is not there: `sobol` is used, which converges to the same image");
+            reader.report().warning(span, message);
+        }
+        _ => unknown_type(reader.report(), "sampler", kind, span, (&KNOWN, &[]), "`sobol` is used"),
+    }
+    reader.inert(&[
+        ("randomization", "points are always Owen-scrambled"),
+        ("seed", "give the seed on the command line, by --seed"),
+        ("jitter", "points are always Owen-scrambled"),
+    ]);
+    reader.finish();
+    SamplerDesc {
+        kind: sampler,
+        pixel_samples,
+    }
+}

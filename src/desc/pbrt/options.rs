@@ -1,0 +1,256 @@
+//! What stands before `WorldBegin`: cameras, film, sampler, filter, integrator; assembled into views.
+
+use super::camera::{self, NamedCamera};
+use super::files::Context;
+use super::film;
+use super::params::Param;
+use super::reader::{ParamReader, unknown_type};
+use super::report::Report;
+use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, LightSamplerKind, MotionDesc, SamplerDesc, ViewDesc};
+use crate::error::Span;
+
+/// A directive that is allowed only before `WorldBegin` and has a type and parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OptionKind {
+    Accelerator,
+    Camera,
+    Film,
+    Integrator,
+    PixelFilter,
+    Sampler,
+}
+
+impl OptionKind {
+    const ALL: [(&'static str, Self); 6] = [
+        ("Accelerator", Self::Accelerator),
+        ("Camera", Self::Camera),
+        ("Film", Self::Film),
+        ("Integrator", Self::Integrator),
+        ("PixelFilter", Self::PixelFilter),
+        ("Sampler", Self::Sampler),
+    ];
+
+    /// By the name of the directive.
+    pub fn of_directive(word: &str) -> Option<Self> {
+        Self::ALL.iter().find(|&&(name, _)| name == word).map(|&(_, kind)| kind)
+    }
+
+    /// The name of the directive.
+    pub fn directive(self) -> &'static str {
+        Self::ALL
+            .iter()
+            .find(|&&(_, kind)| kind == self)
+            .map_or("", |&(name, _)| name)
+    }
+}
+
+/// The options read so far.
+#[derive(Debug)]
+pub(super) struct Options {
+    pub transform_times: [f64; 2],
+    cameras: Vec<NamedCamera>,
+    film: Option<FilmDesc>,
+    filter: Option<FilterDesc>,
+    sampler: Option<SamplerDesc>,
+    integrator: Option<IntegratorDesc>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            transform_times: [0.0, 1.0],
+            cameras: Vec::new(),
+            film: None,
+            filter: None,
+            sampler: None,
+            integrator: None,
+        }
+    }
+}
+
+impl Options {
+    /// Reads the option `kind` of type `name`; the current transform is `ctm`.
+    pub fn read(
+        &mut self,
+        context: &mut Context,
+        kind: OptionKind,
+        (name, name_span): (&str, Span),
+        params: Vec<Param>,
+        span: Span,
+        ctm: MotionDesc,
+    ) {
+        let class = kind.directive().to_lowercase();
+        let reader = ParamReader::new(context, &class, name, name_span, params, &[]);
+        let replaced = match kind {
+            OptionKind::Accelerator => {
+                let message = "`Accelerator` has no effect: choose one on the command line, by --backend";
+                context.report.warning(span, message);
+                false
+            }
+            OptionKind::Camera => {
+                self.cameras.push(camera::read(reader, name, ctm.inverse()));
+                false
+            }
+            OptionKind::Film => self.film.replace(film::read_film(reader, name)).is_some(),
+            OptionKind::PixelFilter => self.filter.replace(film::read_filter(reader, name)).is_some(),
+            OptionKind::Sampler => self.sampler.replace(film::read_sampler(reader, name)).is_some(),
+            OptionKind::Integrator => self.integrator.replace(read_integrator(reader, name)).is_some(),
+        };
+        if replaced {
+            let message = format!("this `{}` replaces the one before", kind.directive());
+            context.report.warning(span, message);
+        }
+    }
+
+    /// The views: one for each camera, and one from the origin if there is none. `ctm` and `file` are those of the main file.
+    pub fn views(&self, report: &mut Report, file: Span) -> Vec<ViewDesc> {
+        let default = [NamedCamera {
+            name: None,
+            camera: camera::default_camera(MotionDesc::IDENTITY),
+            span: file,
+        }];
+        let cameras = if self.cameras.is_empty() {
+            &default[..]
+        } else {
+            &self.cameras[..]
+        };
+        let mut views: Vec<ViewDesc> = Vec::new();
+        for (i, camera) in cameras.iter().enumerate() {
+            let name = match &camera.name {
+                Some((name, _)) => name.clone(),
+                None if cameras.len() == 1 => "camera".to_owned(),
+                None => format!("camera{}", i + 1),
+            };
+            if views.iter().any(|v| v.name == name) {
+                let span = camera.name.as_ref().map_or(camera.span, |&(_, span)| span);
+                report.error(span, format!("there is a view `{name}` already"));
+            }
+            let [open, close] = camera.camera.shutter;
+            let film = self.film.clone().unwrap_or_else(|| film::default_film(file));
+            views.push(ViewDesc {
+                name,
+                camera: camera.camera.clone(),
+                film: FilmDesc {
+                    exposure_time: close - open,
+                    ..film
+                },
+                filter: self.filter.unwrap_or(film::DEFAULT_FILTER),
+                sampler: self.sampler.unwrap_or(film::DEFAULT_SAMPLER),
+                span: camera.span,
+            });
+        }
+        views
+    }
+
+    /// The integrator; by default path tracing with 5 bounces.
+    pub fn integrator(&self) -> IntegratorDesc {
+        self.integrator.clone().unwrap_or(IntegratorDesc::Path {
+            max_depth: Some(DEFAULT_MAX_DEPTH.unsigned_abs()),
+            light_sampler: LightSamplerKind::Bvh,
+        })
+    }
+}
+
+const DEFAULT_MAX_DEPTH: i32 = 5;
+
+fn read_integrator(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
+    const LATER: [&str; 10] = [
+        "ambientocclusion",
+        "bdpt",
+        "function",
+        "lightpath",
+        "mlt",
+        "randomwalk",
+        "simplepath",
+        "simplevolpath",
+        "sppm",
+        "kajiya",
+    ];
+    let span = reader.span;
+    match kind {
+        "path" => {}
+        "volpath" => {
+            let message = "`volpath` is taken for `path`, which is the same without participating media";
+            reader.report().warning(span, message);
+        }
+        _ => {
+            let classes = (&["path", "volpath"][..], &LATER[..]);
+            unknown_type(reader.report(), "integrator", kind, span, classes, "`path` is used");
+        }
+    }
+    let max_depth = reader.integer_in(
+        "maxdepth",
+        DEFAULT_MAX_DEPTH,
+        |v| v >= -1,
+        "0 or more, or -1 for no limit",
+    );
+    let light_sampler = light_sampler(&mut reader);
+    if reader.boolean("regularize", false) {
+        let span = reader.span_of("regularize");
+        let message = "regularization is not supported";
+        reader.report().unsupported(span, message, "it is left out");
+    }
+    reader.finish();
+    IntegratorDesc::Path {
+        max_depth: u32::try_from(max_depth).ok(),
+        light_sampler,
+    }
+}
+
+fn light_sampler(reader: &mut ParamReader<'_>) -> LightSamplerKind {
+    const KNOWN: [&str; 4] = ["bvh", "power", "uniform", "exhaustive"];
+    let Some((name, span)) = reader.string("lightsampler") else {
+        return LightSamplerKind::default();
+    };
+    match name.as_str() {
+        "bvh" => LightSamplerKind::Bvh,
+        "power" => LightSamplerKind::Power,
+        "uniform" => LightSamplerKind::Uniform,
+        "exhaustive" => {
+            let message =
+                "the light sampler `exhaustive` is not there: `bvh` is used, which converges to the same image";
+            reader.report().warning(span, message);
+            LightSamplerKind::Bvh
+        }
+        _ => {
+            let message = format!("unknown light sampler `{name}`");
+            reader.report().unknown(span, message, "`bvh` is used", &name, &KNOWN);
+            LightSamplerKind::Bvh
+        }
+    }
+}
+
+/// `Option`: pbrt's settings of a run. The names count without case, `-` and `_`.
+pub(super) fn render_option(report: &mut Report, name: &str, value: &str, span: Span) {
+    const INERT: [(&str, &str); 7] = [
+        ("seed", "give the seed on the command line, by --seed"),
+        ("disabletexturefiltering", "there are no textures yet"),
+        ("displacementedgescale", "there is no displacement yet"),
+        ("msereferenceimage", "see `lucerna compare`"),
+        ("msereferenceout", "see `lucerna compare`"),
+        ("pixelstats", "see --stats"),
+        ("wavefront", "rendering always goes in waves"),
+    ];
+    const UNSUPPORTED: [&str; 3] = ["disablepixeljitter", "disablewavelengthjitter", "forcediffuse"];
+    let plain: String = name
+        .chars()
+        .filter(|c| !matches!(c, '-' | '_'))
+        .collect::<String>()
+        .to_lowercase();
+    if let Some((_, why)) = INERT.iter().find(|&&(known, _)| known == plain) {
+        report.warning(span, format!("the option `{name}` has no effect: {why}"));
+    } else if UNSUPPORTED.contains(&plain.as_str()) {
+        if value != "false" {
+            report.unsupported(span, format!("the option `{name}` is not supported"), "it is ignored");
+        }
+    } else if plain == "rendercoordsys" {
+        report.warning(
+            span,
+            format!("the option `{name}` has no effect: rendering is in world space"),
+        );
+    } else {
+        let known: Vec<&str> = INERT.iter().map(|&(known, _)| known).chain(UNSUPPORTED).collect();
+        let message = format!("unknown option `{name}`");
+        report.unknown(span, message, "it is ignored", &plain, &known);
+    }
+}

@@ -1,0 +1,138 @@
+//! What is wrong with a scene, collected while reading goes on.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::suggest;
+use crate::desc::ParseOptions;
+use crate::error::{Diagnostic, Severity, SourceMap, Span};
+
+/// After so many errors reading stops, and so many warnings are kept: whoever has more will want to fix these first.
+const MOST: usize = 50;
+
+/// The files read so far, and what was found wrong in them.
+#[derive(Debug, Default)]
+pub(super) struct Report {
+    pub sources: SourceMap,
+    texts: Vec<Arc<[u8]>>,
+    errors: Vec<(Span, Diagnostic)>,
+    warnings: Vec<(Span, Diagnostic)>,
+    warnings_left_out: usize,
+    lenient: bool,
+}
+
+impl Report {
+    pub fn new(options: &ParseOptions) -> Self {
+        Self {
+            lenient: options.lenient,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a file, at most 4 GiB of it; returns its index.
+    pub fn add_file(&mut self, path: &Path, text: Arc<[u8]>) -> u32 {
+        self.texts.push(Arc::clone(&text));
+        self.sources.add(path, text)
+    }
+
+    /// The text of a file, shared.
+    pub fn text(&self, file: u32) -> Arc<[u8]> {
+        Arc::clone(&self.texts[file as usize])
+    }
+
+    /// The bytes that a span covers.
+    pub fn bytes(&self, span: Span) -> &[u8] {
+        self.texts[span.file as usize]
+            .get(span.start as usize..span.end as usize)
+            .unwrap_or_default()
+    }
+
+    /// What a span covers, to be quoted in a message: at most some 40 characters.
+    pub fn excerpt(&self, span: Span) -> String {
+        const LONGEST: usize = 40;
+        let text = String::from_utf8_lossy(self.bytes(span));
+        match text.char_indices().nth(LONGEST) {
+            None => text.into_owned(),
+            Some((cut, _)) => format!("{}...", &text[..cut]),
+        }
+    }
+
+    /// The scene cannot be rendered as it is.
+    pub fn error(&mut self, span: Span, message: impl Into<String>) {
+        self.error_with_help(span, message, None);
+    }
+
+    /// [`Self::error`] with advice.
+    pub fn error_with_help(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
+        if self.errors.len() < MOST {
+            let mut diagnostic = self.sources.diagnostic(Severity::Error, span, message.into());
+            diagnostic.help = help;
+            self.errors.push((span, diagnostic));
+        }
+    }
+
+    /// The scene can be rendered, but this has no effect or is approximated.
+    pub fn warning(&mut self, span: Span, message: impl Into<String>) {
+        self.warning_with_help(span, message, None);
+    }
+
+    fn warning_with_help(&mut self, span: Span, message: impl Into<String>, help: Option<String>) {
+        if self.warnings.len() < MOST {
+            let mut diagnostic = self.sources.diagnostic(Severity::Warning, span, message.into());
+            diagnostic.help = help;
+            self.warnings.push((span, diagnostic));
+        } else {
+            self.warnings_left_out += 1;
+        }
+    }
+
+    /// Something is not known or not supported and would change the image: an error, or with `--lenient` a warning, which `instead`
+    /// completes by saying what is done instead.
+    pub fn unsupported(&mut self, span: Span, message: impl Into<String>, instead: &str) {
+        self.unsupported_with_help(span, message, instead, None);
+    }
+
+    /// [`Self::unsupported`], with "did you mean" if one of `known` resembles `word`.
+    pub fn unknown(&mut self, span: Span, message: impl Into<String>, instead: &str, word: &str, known: &[&str]) {
+        let help = suggest::closest(word, known).map(|name| format!("did you mean `{name}`?"));
+        self.unsupported_with_help(span, message, instead, help);
+    }
+
+    fn unsupported_with_help(&mut self, span: Span, message: impl Into<String>, instead: &str, help: Option<String>) {
+        if self.lenient {
+            self.warning_with_help(span, format!("{}: {instead}", message.into()), help);
+        } else {
+            self.error_with_help(span, message, help);
+        }
+    }
+
+    /// Whether enough errors have been found to stop reading.
+    pub fn is_full(&self) -> bool {
+        self.errors.len() >= MOST
+    }
+
+    /// Whether anything is wrong.
+    pub fn has_errors(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
+    /// The errors, file by file, in order.
+    pub fn into_errors(self) -> Vec<Diagnostic> {
+        in_order(self.errors)
+    }
+
+    /// The sources and the warnings, file by file, in order.
+    pub fn into_sources_and_warnings(mut self) -> (SourceMap, Vec<Diagnostic>) {
+        if self.warnings_left_out > 0
+            && let Some((_, last)) = self.warnings.last_mut()
+        {
+            last.help = Some(format!("{} more warnings are not shown", self.warnings_left_out));
+        }
+        (self.sources, in_order(self.warnings))
+    }
+}
+
+fn in_order(mut diagnostics: Vec<(Span, Diagnostic)>) -> Vec<Diagnostic> {
+    diagnostics.sort_by_key(|(span, _)| (span.file, span.start));
+    diagnostics.into_iter().map(|(_, diagnostic)| diagnostic).collect()
+}

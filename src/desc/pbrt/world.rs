@@ -1,0 +1,180 @@
+//! What the world consists of, before names are resolved and mesh files read.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::shape::{PendingMeshes, RawKind};
+use crate::desc::{AreaLightDesc, LightDesc, MaterialDesc, MaterialKind, MotionDesc, SpectrumDesc, SpectrumValue};
+use crate::error::Span;
+
+/// The world so far.
+#[derive(Debug, Default)]
+pub(super) struct World {
+    pub materials: Materials,
+    pub shapes: Vec<RawShape>,
+    pub objects: Vec<RawObject>,
+    pub instances: Vec<RawInstance>,
+    pub lights: Vec<LightDesc>,
+    pub meshes: PendingMeshes,
+    object_names: HashMap<String, usize>,
+    /// The object between `ObjectBegin` and `ObjectEnd`.
+    current: Option<usize>,
+}
+
+/// A shape whose material is a slot and whose mesh may yet have to be read.
+#[derive(Debug)]
+pub(super) struct RawShape {
+    pub span: Span,
+    pub kind: RawKind,
+    pub world_from_object: MotionDesc,
+    pub reverse_orientation: bool,
+    pub material: usize,
+    pub area_light: Option<Arc<AreaLightDesc>>,
+}
+
+/// A group of shapes.
+#[derive(Debug)]
+pub(super) struct RawObject {
+    pub name: String,
+    pub span: Span,
+    pub shapes: Vec<RawShape>,
+}
+
+/// An instance of an object that may be defined later.
+#[derive(Debug)]
+pub(super) struct RawInstance {
+    pub name: String,
+    pub span: Span,
+    pub world_from_instance: MotionDesc,
+}
+
+impl World {
+    /// Whether shapes now go into an object.
+    pub fn is_in_object(&self) -> bool {
+        self.current.is_some()
+    }
+
+    /// Begins an object; what is wrong with that, if anything is: then its shapes go to nobody's harm into whatever is begun.
+    pub fn begin_object(&mut self, name: String, span: Span) -> Option<String> {
+        if self.current.is_some() {
+            return Some("`ObjectBegin` is not allowed between `ObjectBegin` and `ObjectEnd`".to_owned());
+        }
+        let index = self.objects.len();
+        let taken = self.object_names.contains_key(&name);
+        let problem = taken.then(|| format!("there is an object `{name}` already"));
+        if !taken {
+            self.object_names.insert(name.clone(), index);
+        }
+        self.objects.push(RawObject {
+            name,
+            span,
+            shapes: Vec::new(),
+        });
+        self.current = Some(index);
+        problem
+    }
+
+    /// Ends the object that is begun.
+    pub fn end_object(&mut self) {
+        self.current = None;
+    }
+
+    /// The index of an object.
+    pub fn object(&self, name: &str) -> Option<usize> {
+        self.object_names.get(name).copied()
+    }
+
+    /// The names of all objects.
+    pub fn object_names(&self) -> Vec<&str> {
+        self.objects.iter().map(|o| o.name.as_str()).collect()
+    }
+
+    /// Adds a shape, to the object that is begun if one is.
+    pub fn add_shape(&mut self, shape: RawShape) {
+        match self.current {
+            Some(index) => self.objects[index].shapes.push(shape),
+            None => self.shapes.push(shape),
+        }
+    }
+}
+
+/// Materials in slots: a name gets its slot when it is first mentioned, which may be before its definition.
+#[derive(Debug)]
+pub(super) struct Materials {
+    slots: Vec<Slot>,
+    names: HashMap<String, usize>,
+}
+
+/// What a slot holds.
+#[derive(Debug)]
+pub(super) enum Slot {
+    /// A material.
+    Surface(MaterialDesc),
+    /// No surface, only a boundary between media.
+    Interface,
+    /// Nothing yet; where the name was first used.
+    Undefined { name: String, span: Span },
+}
+
+impl Default for Materials {
+    /// With pbrt's default material in slot 0.
+    fn default() -> Self {
+        let span = Span::default();
+        Self {
+            slots: vec![Slot::Surface(default_material(span))],
+            names: HashMap::new(),
+        }
+    }
+}
+
+/// Diffuse with a reflectance of 0.5.
+pub(super) fn default_material(span: Span) -> MaterialDesc {
+    let reflectance = SpectrumDesc {
+        value: SpectrumValue::Constant(0.5),
+        span,
+    };
+    MaterialDesc {
+        name: None,
+        kind: MaterialKind::Diffuse { reflectance },
+        span,
+    }
+}
+
+impl Materials {
+    /// Adds a material (none: an interface); its slot.
+    pub fn add(&mut self, material: Option<MaterialDesc>) -> usize {
+        self.slots.push(material.map_or(Slot::Interface, Slot::Surface));
+        self.slots.len() - 1
+    }
+
+    /// The slot of a name used at `span`.
+    pub fn named(&mut self, name: String, span: Span) -> usize {
+        let slots = &mut self.slots;
+        *self.names.entry(name).or_insert_with_key(|name| {
+            let name = name.clone();
+            slots.push(Slot::Undefined { name, span });
+            slots.len() - 1
+        })
+    }
+
+    /// Defines a name; what is wrong with that, if anything is.
+    pub fn define(&mut self, name: String, span: Span, material: Option<MaterialDesc>) -> Option<String> {
+        let index = self.named(name.clone(), span);
+        if !matches!(self.slots[index], Slot::Undefined { .. }) {
+            return Some(format!("there is a named material `{name}` already"));
+        }
+        self.slots[index] = match material {
+            Some(material) => Slot::Surface(MaterialDesc {
+                name: Some(name),
+                ..material
+            }),
+            None => Slot::Interface,
+        };
+        None
+    }
+
+    /// All slots.
+    pub fn into_slots(self) -> Vec<Slot> {
+        self.slots
+    }
+}

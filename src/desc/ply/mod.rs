@@ -1,0 +1,246 @@
+//! Meshes in the PLY format (Turk 1994): text or binary of either byte order, all of them possibly compressed with gzip.
+//!
+//! Read are the vertices' `x y z`, `nx ny nz` and texture coordinates (`u v`, `s t`, `texture_u texture_v`, `texture_s
+//! texture_t`), and the faces' `vertex_indices` or `vertex_index`; everything else is skipped. Polygons become fans of triangles
+//! around their first vertex. For a planar quadrilateral that is pbrt-v4's surface too; of others pbrt makes bilinear patches.
+//!
+//! Counts in a file are checked against its length before anything is allocated by them.
+
+mod cursor;
+mod header;
+
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+
+use super::{MeshDesc, bytes};
+use cursor::{Cursor, decode};
+use header::{Element, Encoding, Scalar};
+
+/// A mesh file.
+#[derive(Debug)]
+pub struct PlyFile {
+    /// What it describes.
+    pub mesh: MeshDesc,
+    /// BLAKE3 of its content, decompressed.
+    pub hash: blake3::Hash,
+}
+
+/// The longest file that is read, decompressed.
+const LONGEST: u64 = 1 << 36;
+
+/// Reads a file.
+///
+/// # Errors
+///
+/// What is wrong, and in which line or at which byte.
+pub fn load(path: &Path) -> Result<PlyFile, String> {
+    let content = bytes::read(path, LONGEST).map_err(|e| e.to_string())?;
+    Ok(PlyFile {
+        mesh: parse(&content)?,
+        hash: blake3::hash(&content),
+    })
+}
+
+/// Reads a mesh from the content of a file, not compressed.
+///
+/// # Errors
+///
+/// What is wrong, and in which line or at which byte.
+pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
+    let header = header::parse(content)?;
+    let mut cursor = Cursor::new(content, &header);
+    let mut mesh = MeshDesc::default();
+    for element in &header.elements {
+        let least = element.least_row(header.encoding);
+        // The last number of a text needs no space after it.
+        if element.count.saturating_mul(least) > cursor.left() as u64 + 1 {
+            let message = format!("the file is too short for {} rows of `{}`", element.count, element.name);
+            return Err(cursor.problem(&message));
+        }
+        match element.name.as_str() {
+            "vertex" if mesh.positions.is_empty() => read_vertices(&mut cursor, element, header.encoding, &mut mesh)?,
+            "face" if mesh.indices.is_empty() => mesh.indices = read_faces(&mut cursor, element)?,
+            _ => skip(&mut cursor, element, header.encoding)?,
+        }
+    }
+    check(&mesh)?;
+    Ok(mesh)
+}
+
+/// What must hold of a mesh that has been read.
+fn check(mesh: &MeshDesc) -> Result<(), String> {
+    let count = mesh.positions.len();
+    if count == 0 || mesh.indices.is_empty() {
+        return Err("there are no vertices or no faces".to_owned());
+    }
+    if let Some(bad) = mesh.indices.iter().flatten().find(|&&i| i as usize >= count) {
+        return Err(format!(
+            "a face has the vertex {bad}, but there are {count}, counted from 0"
+        ));
+    }
+    let finite = |values: &[Vec3]| values.iter().position(|v| !v.is_finite());
+    let uv = mesh.uvs.iter().position(|v| !v.is_finite());
+    for (bad, what) in [
+        (finite(&mesh.positions), "position"),
+        (finite(&mesh.normals), "normal"),
+        (uv, "texture coordinate"),
+    ] {
+        if let Some(index) = bad {
+            return Err(format!(
+                "the {what} of vertex {index} is not finite in 32-bit floating point"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Where the properties that matter are in a row.
+struct Columns {
+    position: [usize; 3],
+    normal: Option<[usize; 3]>,
+    uv: Option<[usize; 2]>,
+}
+
+impl Columns {
+    fn of(element: &Element) -> Result<Self, String> {
+        let find = |name: &str| {
+            let mut properties = element.properties.iter();
+            properties.position(|p| p.name == name && p.length.is_none())
+        };
+        let find3 = |x, y, z| Some([find(x)?, find(y)?, find(z)?]);
+        let uv_names = [
+            ("u", "v"),
+            ("s", "t"),
+            ("texture_u", "texture_v"),
+            ("texture_s", "texture_t"),
+        ];
+        Ok(Self {
+            position: find3("x", "y", "z").ok_or("the vertices have no properties `x`, `y` and `z`")?,
+            normal: find3("nx", "ny", "nz"),
+            uv: uv_names.iter().find_map(|(u, v)| Some([find(u)?, find(v)?])),
+        })
+    }
+}
+
+fn read_vertices(
+    cursor: &mut Cursor,
+    element: &Element,
+    encoding: Encoding,
+    mesh: &mut MeshDesc,
+) -> Result<(), String> {
+    let columns = Columns::of(element)?;
+    if u32::try_from(element.count).is_err() {
+        return Err("there are more vertices than 32 bits can count".to_owned());
+    }
+    let count = element.count as usize;
+    mesh.positions.reserve_exact(count);
+    mesh.normals
+        .reserve_exact(if columns.normal.is_some() { count } else { 0 });
+    mesh.uvs.reserve_exact(if columns.uv.is_some() { count } else { 0 });
+    match element.fixed_row().filter(|_| encoding != Encoding::Ascii) {
+        Some(row) => {
+            let offsets: Vec<usize> = element
+                .properties
+                .iter()
+                .scan(0, |end, p| {
+                    let start = *end;
+                    *end += p.value.bytes();
+                    Some(start)
+                })
+                .collect();
+            let rows = cursor.bytes(count.saturating_mul(row))?;
+            for row in rows.chunks_exact(row) {
+                let at = |i: usize| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32;
+                push_vertex(mesh, &columns, at);
+            }
+        }
+        None => {
+            let mut row = vec![0.0; element.properties.len()];
+            for _ in 0..count {
+                for (property, value) in element.properties.iter().zip(&mut row) {
+                    match property.length {
+                        None => *value = cursor.number(property.value)? as f32,
+                        Some(length) => skip_list(cursor, length, property.value)?,
+                    }
+                }
+                push_vertex(mesh, &columns, |i| row[i]);
+            }
+        }
+    }
+    Ok(())
+}
+
+#[inline]
+fn push_vertex(mesh: &mut MeshDesc, columns: &Columns, at: impl Fn(usize) -> f32) {
+    mesh.positions.push(Vec3::from_array(columns.position.map(&at)));
+    if let Some(normal) = columns.normal {
+        mesh.normals.push(Vec3::from_array(normal.map(&at)));
+    }
+    if let Some(uv) = columns.uv {
+        mesh.uvs.push(Vec2::from_array(uv.map(&at)));
+    }
+}
+
+/// The faces as triangles. Those with fewer than three vertices are left out, as pbrt leaves them.
+fn read_faces(cursor: &mut Cursor, element: &Element) -> Result<Vec<[u32; 3]>, String> {
+    let is_corners = |name: &str| name == "vertex_indices" || name == "vertex_index";
+    let mut properties = element.properties.iter();
+    let corners = properties
+        .position(|p| is_corners(&p.name) && p.length.is_some() && p.value.is_integer())
+        .ok_or("the faces have no list of integers `vertex_indices`")?;
+    let mut triangles = Vec::with_capacity(element.count as usize);
+    for _ in 0..element.count {
+        for (i, property) in element.properties.iter().enumerate() {
+            match property.length {
+                Some(length) if i == corners => {
+                    let count = cursor.index(length)?;
+                    read_fan(cursor, count, property.value, &mut triangles)?;
+                }
+                Some(length) => skip_list(cursor, length, property.value)?,
+                None => cursor.skip(1, property.value)?,
+            }
+        }
+    }
+    Ok(triangles)
+}
+
+fn read_fan(cursor: &mut Cursor, count: usize, kind: Scalar, triangles: &mut Vec<[u32; 3]>) -> Result<(), String> {
+    let (mut first, mut previous) = (0, 0);
+    for i in 0..count {
+        let corner = cursor.index(kind)? as u32;
+        match i {
+            0 => first = corner,
+            1 => {}
+            _ => triangles.push([first, previous, corner]),
+        }
+        previous = corner;
+    }
+    Ok(())
+}
+
+fn skip_list(cursor: &mut Cursor, length: Scalar, value: Scalar) -> Result<(), String> {
+    let count = cursor.index(length)?;
+    cursor.skip(count, value)
+}
+
+/// Skips an element that does not matter.
+fn skip(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Result<(), String> {
+    if element.properties.is_empty() {
+        return Ok(());
+    }
+    let count = usize::try_from(element.count).unwrap_or(usize::MAX);
+    if let Some(row) = element.fixed_row().filter(|_| encoding != Encoding::Ascii) {
+        cursor.bytes(count.saturating_mul(row))?;
+        return Ok(());
+    }
+    for _ in 0..count {
+        for property in &element.properties {
+            match property.length {
+                Some(length) => skip_list(cursor, length, property.value)?,
+                None => cursor.skip(1, property.value)?,
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,294 @@
+//! Exact sums. A contribution is rounded once to a multiple of 2^-64 and added as an integer, so that the order of additions does
+//! not matter: the image has the same bits for any number of threads and any split of the samples.
+
+use std::sync::Mutex;
+
+/// Edge of a tile in pixels. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
+pub const TILE_SIZE: u32 = 64;
+
+/// A rectangle of pixels: origin top left, `x1` and `y1` exclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelRect {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// One past the last column.
+    pub x1: u32,
+    /// One past the last row.
+    pub y1: u32,
+}
+
+impl PixelRect {
+    /// All pixels of a picture.
+    pub fn full(resolution: [u32; 2]) -> Self {
+        Self {
+            x0: 0,
+            y0: 0,
+            x1: resolution[0],
+            y1: resolution[1],
+        }
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.x1 - self.x0
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.y1 - self.y0
+    }
+
+    /// Pixels.
+    pub fn area(&self) -> u64 {
+        u64::from(self.width()) * u64::from(self.height())
+    }
+
+    /// Whether it holds pixel (x, y).
+    #[inline]
+    pub fn contains(&self, x: u32, y: u32) -> bool {
+        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
+    }
+
+    /// The pixels in both; `None` if there are none.
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        let rect = Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        };
+        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect)
+    }
+}
+
+/// The sums of one pixel: weighted linear RGB and weights, in units of 2^-64.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct PixelSums {
+    rgb: [i128; 3],
+    weight: i128,
+}
+
+/// The sums of the pixels of a tile that lie in the film.
+#[derive(Clone, Debug)]
+pub struct TileSums {
+    rect: PixelRect,
+    pixels: Vec<PixelSums>,
+    dropped: u64,
+}
+
+/// The greatest magnitude that is added: 2^62 of them still fit.
+const LARGEST: f64 = (1_u64 << 62) as f64;
+
+/// `value` in units of 2^-64, rounded towards zero; `None` if it is not finite or beyond [`LARGEST`].
+#[inline]
+fn quantize(value: f64) -> Option<i128> {
+    // Scaling by a power of two is exact.
+    (value.abs() < LARGEST).then_some((value * 18_446_744_073_709_551_616.0) as i128)
+}
+
+/// Back to a number.
+fn dequantize(sum: i128) -> f64 {
+    sum as f64 / 18_446_744_073_709_551_616.0
+}
+
+impl TileSums {
+    /// The pixels that it holds.
+    pub fn rect(&self) -> PixelRect {
+        self.rect
+    }
+
+    /// Adds one camera sample of pixel (x, y), which must lie in [`TileSums::rect`]: `weight` of the pixel filter, and linear
+    /// `rgb`, `None` for a sample that was dropped. A dropped sample, or one whose colour is not finite or out of range, counts
+    /// as black; whether it did is returned.
+    #[inline]
+    pub fn add(&mut self, x: u32, y: u32, rgb: Option<[f32; 3]>, weight: f32) -> bool {
+        let index = (y - self.rect.y0) * self.rect.width() + (x - self.rect.x0);
+        let sums = &mut self.pixels[index as usize];
+        let w = f64::from(weight);
+        sums.weight += quantize(w).unwrap_or(0);
+        let quantized = rgb.and_then(|[r, g, b]| {
+            Some([
+                quantize(w * f64::from(r))?,
+                quantize(w * f64::from(g))?,
+                quantize(w * f64::from(b))?,
+            ])
+        });
+        match quantized {
+            Some(rgb) => {
+                for (sum, value) in sums.rgb.iter_mut().zip(rgb) {
+                    *sum += value;
+                }
+                true
+            }
+            None => {
+                self.dropped += 1;
+                false
+            }
+        }
+    }
+}
+
+/// The sums of all pixels of a crop, by tile.
+#[derive(Debug)]
+pub struct Film {
+    resolution: [u32; 2],
+    crop: PixelRect,
+    tiles: Vec<Mutex<TileSums>>,
+}
+
+impl Film {
+    /// A black film for the pixels in `crop` of a picture of `resolution`.
+    ///
+    /// # Panics
+    /// If the crop is empty or reaches beyond the picture.
+    pub fn new(resolution: [u32; 2], crop: PixelRect) -> Self {
+        assert!(crop.x0 < crop.x1 && crop.y0 < crop.y1 && crop.x1 <= resolution[0] && crop.y1 <= resolution[1]);
+        let mut tiles = Vec::new();
+        for ty in crop.y0 / TILE_SIZE..crop.y1.div_ceil(TILE_SIZE) {
+            for tx in crop.x0 / TILE_SIZE..crop.x1.div_ceil(TILE_SIZE) {
+                let (x0, y0) = (tx * TILE_SIZE, ty * TILE_SIZE);
+                let tile = PixelRect {
+                    x0,
+                    y0,
+                    x1: x0 + TILE_SIZE,
+                    y1: y0 + TILE_SIZE,
+                };
+                if let Some(rect) = tile.intersection(&crop) {
+                    let pixels = vec![PixelSums::default(); rect.area() as usize];
+                    tiles.push(Mutex::new(TileSums {
+                        rect,
+                        pixels,
+                        dropped: 0,
+                    }));
+                }
+            }
+        }
+        Self {
+            resolution,
+            crop,
+            tiles,
+        }
+    }
+
+    /// Width and height of the whole picture.
+    pub fn resolution(&self) -> [u32; 2] {
+        self.resolution
+    }
+
+    /// The pixels that it holds.
+    pub fn crop(&self) -> PixelRect {
+        self.crop
+    }
+
+    /// Its tiles, row by row, each behind its own lock.
+    pub fn tiles(&self) -> &[Mutex<TileSums>] {
+        &self.tiles
+    }
+
+    /// Samples that counted as black because they were not finite, negative or out of range.
+    pub fn dropped_samples(&self) -> u64 {
+        self.tiles.iter().map(|tile| lock(tile).dropped).sum()
+    }
+
+    /// Linear RGB, row by row from the top left pixel of the crop: the weighted means; black where no weight fell.
+    pub fn develop(&self) -> Vec<f32> {
+        let mut image = vec![0.0; 3 * self.crop.area() as usize];
+        for tile in &self.tiles {
+            let tile = lock(tile);
+            let mut pixels = tile.pixels.iter();
+            for y in tile.rect.y0..tile.rect.y1 {
+                for x in tile.rect.x0..tile.rect.x1 {
+                    let Some(sums) = pixels.next() else { continue };
+                    if sums.weight == 0 {
+                        continue;
+                    }
+                    let row = u64::from(y - self.crop.y0) * u64::from(self.crop.width());
+                    let index = 3 * (row + u64::from(x - self.crop.x0)) as usize;
+                    let weight = dequantize(sums.weight);
+                    for (out, &sum) in image[index..index + 3].iter_mut().zip(&sums.rgb) {
+                        *out = (dequantize(sum) / weight) as f32;
+                    }
+                }
+            }
+        }
+        image
+    }
+}
+
+/// Locks a tile; the sums are whole even if another thread panicked between two of them.
+pub(crate) fn lock(tile: &Mutex<TileSums>) -> std::sync::MutexGuard<'_, TileSums> {
+    tile.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film() -> Film {
+        Film::new(
+            [100, 70],
+            PixelRect {
+                x0: 60,
+                y0: 10,
+                x1: 90,
+                y1: 66,
+            },
+        )
+    }
+
+    #[test]
+    fn tiles_lie_on_the_grid_of_the_whole_picture() {
+        let rects: Vec<_> = film().tiles().iter().map(|tile| lock(tile).rect()).collect();
+        assert_eq!(rects.len(), 4);
+        assert_eq!(
+            rects[0],
+            PixelRect {
+                x0: 60,
+                y0: 10,
+                x1: 64,
+                y1: 64
+            }
+        );
+        assert_eq!(
+            rects[3],
+            PixelRect {
+                x0: 64,
+                y0: 64,
+                x1: 90,
+                y1: 66
+            }
+        );
+    }
+
+    #[test]
+    fn sums_do_not_depend_on_their_order() {
+        // Values that floating-point addition cannot reorder: 1e8 + 1e-8 - 1e8.
+        let values: Vec<f32> = (0..1000)
+            .map(|i| (if i % 3 == 0 { 1e8 } else { 1e-8 }) * (1.0 + i as f32))
+            .collect();
+        let render = |order: &mut dyn Iterator<Item = &f32>| {
+            let film = film();
+            for &v in order {
+                lock(&film.tiles()[0]).add(61, 11, Some([v, -v, 0.5 * v]), 0.7);
+            }
+            film.develop()
+        };
+        assert_eq!(render(&mut values.iter()), render(&mut values.iter().rev()));
+    }
+
+    #[test]
+    fn pixels_are_weighted_means_and_dropped_samples_count_as_black() {
+        let film = film();
+        let mut tile = lock(&film.tiles()[3]);
+        assert!(tile.add(89, 65, Some([1.0, 2.0, 3.0]), 1.0));
+        assert!(tile.add(89, 65, Some([5.0, 0.0, 0.0]), -0.5));
+        assert!(!tile.add(89, 65, Some([f32::NAN, 0.0, 0.0]), 0.5));
+        assert!(!tile.add(89, 65, None, 1.0));
+        drop(tile);
+        let image = film.develop();
+        assert_eq!(image[image.len() - 3..], [-0.75, 1.0, 1.5]);
+        assert_eq!(film.dropped_samples(), 2);
+    }
+}

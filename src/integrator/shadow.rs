@@ -1,0 +1,59 @@
+//! Deferred visibility: every shadow ray of a wave goes through one queue, with what it brings if nothing is in its way.
+
+use std::time::{Duration, Instant};
+
+use crate::accel::{Accel, RayKind};
+use crate::geometry::{LANES, Ray, RayPacket};
+use crate::spectrum::SampledSpectrum;
+
+/// What arrives if a shadow ray is not blocked.
+#[derive(Clone, Copy, Debug)]
+struct Contribution {
+    slot: u32,
+    value: SampledSpectrum,
+}
+
+/// Shadow rays and their contributions, in the order in which they were found.
+#[derive(Debug, Default)]
+pub(super) struct ShadowQueue {
+    packets: Vec<RayPacket>,
+    contributions: Vec<Contribution>,
+}
+
+impl ShadowQueue {
+    /// Adds a ray, which must be valid, that brings `value` to `slot`.
+    #[inline]
+    pub fn push(&mut self, ray: &Ray, slot: u32, value: SampledSpectrum) {
+        let lane = self.contributions.len() % LANES;
+        if lane == 0 {
+            self.packets.push(RayPacket::EMPTY);
+        }
+        let last = self.packets.len() - 1;
+        self.packets[last].set(lane, ray);
+        self.contributions.push(Contribution { slot, value });
+    }
+
+    /// Number of rays.
+    pub fn len(&self) -> usize {
+        self.contributions.len()
+    }
+
+    /// Traces all rays, hands the contributions of those that are not blocked to `add` in order, and empties the queue. Returns
+    /// the time inside the backend.
+    pub fn flush(&mut self, accel: &dyn Accel, mut add: impl FnMut(u32, SampledSpectrum)) -> Duration {
+        if self.contributions.is_empty() {
+            return Duration::ZERO;
+        }
+        let start = Instant::now();
+        accel.occluded(RayKind::Shadow, &mut self.packets, None);
+        let elapsed = start.elapsed();
+        for (i, contribution) in self.contributions.iter().enumerate() {
+            if !self.packets[i / LANES].is_occluded(i % LANES) {
+                add(contribution.slot, contribution.value);
+            }
+        }
+        self.packets.clear();
+        self.contributions.clear();
+        elapsed
+    }
+}

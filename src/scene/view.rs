@@ -1,0 +1,136 @@
+//! One picture of a scene: camera, film, filter, sampler.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use super::shapes::animated;
+use crate::camera::{Camera, CameraSpec, Projection};
+use crate::desc::{self, CameraKind, SceneDesc, ViewDesc};
+use crate::error::{Error, Result, Severity};
+use crate::film::{Film, FilterKind, PixelFilter, PixelRect, Sensor};
+use crate::sampling::{Sampler, SamplerKind};
+use crate::spectrum::ColorMode;
+
+/// Everything about a picture that is not the scene.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Distinct among the views of a scene.
+    pub name: String,
+    /// Where from.
+    pub camera: Camera,
+    /// Pixels of the whole picture.
+    pub resolution: [u32; 2],
+    /// The pixels that are rendered.
+    pub crop: PixelRect,
+    /// How much of its surroundings a pixel sees.
+    pub filter: PixelFilter,
+    /// What the film records of light.
+    pub sensor: Sensor,
+    /// The source of random numbers, with the number of samples a pixel.
+    pub sampler: Sampler,
+    /// Which of the samples of each pixel are rendered; within the number that the sampler plans for.
+    pub samples: Range<u32>,
+    /// The output that the scene names.
+    pub filename: Option<PathBuf>,
+}
+
+/// What a command line changes of a view.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ViewOverrides {
+    /// Pixels of the whole picture.
+    pub resolution: Option<[u32; 2]>,
+    /// The pixels to render.
+    pub crop: Option<PixelRect>,
+    /// Samples a pixel.
+    pub spp: Option<u32>,
+    /// Kind of sampler.
+    pub sampler: Option<SamplerKind>,
+    /// Only this sample of each pixel.
+    pub sample: Option<u32>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl View {
+    /// The view that `view` of `desc` describes, for transport in `color`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a camera or filter that cannot be had, [`Error::Usage`] for an override that makes no sense.
+    pub fn build(desc: &SceneDesc, view: &ViewDesc, color: ColorMode, overrides: &ViewOverrides) -> Result<Self> {
+        let problem =
+            |message: String| Error::Scene(vec![desc.sources.diagnostic(Severity::Error, view.span, message)]);
+        let resolution = overrides.resolution.unwrap_or(view.film.resolution);
+        let crop = overrides.crop.unwrap_or_else(|| {
+            let crop = view.film.crop.pixels(resolution);
+            PixelRect {
+                x0: crop.x0,
+                y0: crop.y0,
+                x1: crop.x1,
+                y1: crop.y1,
+            }
+        });
+        if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 || crop.x1 > resolution[0] || crop.y1 > resolution[1] {
+            let [width, height] = resolution;
+            return Err(Error::Usage(format!(
+                "crop {},{},{},{} is empty or reaches beyond the picture of {width}x{height} pixels",
+                crop.x0, crop.y0, crop.x1, crop.y1
+            )));
+        }
+        let filter = PixelFilter::new(filter_kind(view.filter.kind), view.filter.radius)
+            .ok_or_else(|| problem("this pixel filter is zero or integrates to zero".to_owned()))?;
+        let kind = overrides.sampler.unwrap_or(match view.sampler.kind {
+            desc::SamplerKind::Independent => SamplerKind::Independent,
+            desc::SamplerKind::Sobol => SamplerKind::Sobol,
+        });
+        let spp = overrides.spp.unwrap_or(view.sampler.pixel_samples);
+        if let Some(sample) = overrides.sample.filter(|&sample| sample >= spp) {
+            return Err(Error::Usage(format!(
+                "there is no sample {sample}: a pixel has {spp}, counted from 0"
+            )));
+        }
+        Ok(Self {
+            name: view.name.clone(),
+            camera: Camera::new(&camera_spec(desc, view, resolution).map_err(problem)?),
+            resolution,
+            crop,
+            filter,
+            sensor: Sensor::new(color, view.film.imaging_ratio()),
+            sampler: Sampler::new(kind, overrides.seed, spp),
+            samples: overrides.sample.map_or(0..spp, |sample| sample..sample + 1),
+            filename: view.film.filename.clone(),
+        })
+    }
+
+    /// An empty film for it.
+    pub fn film(&self) -> Film {
+        Film::new(self.resolution, self.crop)
+    }
+}
+
+fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<CameraSpec, String> {
+    let camera = &view.camera;
+    let [start, end] = desc.transform_times;
+    Ok(CameraSpec {
+        projection: match camera.kind {
+            CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
+            CameraKind::Orthographic => Projection::Orthographic,
+        },
+        screen_window: camera.screen_window(resolution),
+        resolution,
+        lens_radius: camera.lens_radius,
+        focal_distance: camera.focal_distance,
+        shutter: camera.shutter.map(|time| (time - start) / (end - start)),
+        world_from_camera: animated(&camera.world_from_camera)?,
+    })
+}
+
+fn filter_kind(kind: desc::FilterKind) -> FilterKind {
+    match kind {
+        desc::FilterKind::Box => FilterKind::Box,
+        desc::FilterKind::Triangle => FilterKind::Triangle,
+        desc::FilterKind::Gaussian { sigma } => FilterKind::Gaussian { sigma },
+        desc::FilterKind::Mitchell { b, c } => FilterKind::Mitchell { b, c },
+        desc::FilterKind::LanczosSinc { tau } => FilterKind::LanczosSinc { tau },
+        desc::FilterKind::BlackmanHarris => FilterKind::BlackmanHarris,
+    }
+}

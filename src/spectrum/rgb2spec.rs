@@ -1,0 +1,149 @@
+//! Smooth spectra for rgb colours: Jakob and Hanika 2019, "A low-dimensional function space for efficient spectral
+//! upsampling".
+//!
+//! A reflectance is s(p(λ)), p a polynomial of degree two, s(x) = 1/2 + x / (2 √(1 + x²)). The three coefficients are
+//! solved for here, per colour, so that the reflectance under D65 has exactly that colour.
+
+use std::sync::LazyLock;
+
+use glam::{DMat3, DVec3};
+
+use super::cie::{self, ENTRIES, wavelength};
+use super::{SampledSpectrum, Wavelengths, named};
+
+/// The middle and half width of the visible range: polynomials are in (λ - CENTRE) / HALF_RANGE, from -1 to 1, where single
+/// precision is enough even for the steep polynomials of saturated colours.
+const CENTRE: f32 = 595.0;
+const HALF_RANGE: f32 = 235.0;
+
+/// A reflectance in (0, 1) over wavelength: a sigmoid of a quadratic polynomial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SigmoidPolynomial([f32; 3]);
+
+impl SigmoidPolynomial {
+    /// The value at `lambda` nm.
+    #[inline]
+    pub fn at(&self, lambda: f32) -> f32 {
+        let t = (lambda - CENTRE) * (1.0 / HALF_RANGE);
+        let [a, b, c] = self.0;
+        let x = (a * t + b) * t + c;
+        0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+    }
+
+    /// The values at the wavelengths of a path.
+    #[inline]
+    pub fn sample(&self, wavelengths: &Wavelengths) -> SampledSpectrum {
+        SampledSpectrum(wavelengths.lambda.map(|lambda| self.at(lambda)))
+    }
+}
+
+/// For each nm what a reflectance of 1 there, under D65, adds to linear sRGB.
+static RESPONSE: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
+    let d65 = named::d65();
+    let total = cie::integrate_y(|nm| d65.at(nm));
+    (0..ENTRIES)
+        .map(|i| {
+            let nm = wavelength(i);
+            let xyz = cie::integrate_xyz(|other| if other == nm { d65.at(nm) } else { 0.0 });
+            let t = f64::from((nm - CENTRE) / HALF_RANGE);
+            (t, DVec3::from(cie::xyz_to_srgb(xyz)) / total)
+        })
+        .collect()
+});
+
+/// The colour of a polynomial's reflectance and its derivative by the coefficients.
+fn colour(coefficients: DVec3) -> (DVec3, DMat3) {
+    let mut rgb = DVec3::ZERO;
+    let mut jacobian = DMat3::ZERO;
+    for &(t, response) in RESPONSE.iter() {
+        let powers = DVec3::new(t * t, t, 1.0);
+        let x = powers.dot(coefficients);
+        let inverse_root = 1.0 / (1.0 + x * x).sqrt();
+        rgb += response * (0.5 + 0.5 * x * inverse_root);
+        let slope = response * (0.5 * inverse_root * inverse_root * inverse_root);
+        jacobian.x_axis += slope * powers.x;
+        jacobian.y_axis += slope * powers.y;
+        jacobian.z_axis += slope;
+    }
+    (rgb, jacobian)
+}
+
+/// How close a solution comes to its colour, in each component.
+const TOLERANCE: f64 = 1e-9;
+
+/// The smallest step of the continuation: below it the rest of the way is left.
+const SMALLEST_STEP: f64 = 1e-5;
+
+/// The reflectance whose colour under D65 is `rgb`, linear sRGB in [0, 1] and not all components equal.
+///
+/// Follows the solutions along the line from middle grey, whose polynomial is zero, to the colour: from a close start
+/// Newton's method converges, and inside the cube there is a solution all along.
+pub(super) fn solve(rgb: [f32; 3]) -> SigmoidPolynomial {
+    let goal = DVec3::from(rgb.map(f64::from));
+    let grey = DVec3::splat(0.5);
+    let (mut done, mut step) = (0.0, 1.0_f64);
+    let mut coefficients = DVec3::ZERO;
+    while done < 1.0 && step > SMALLEST_STEP {
+        let next = (done + step).min(1.0);
+        match newton(grey.lerp(goal, next), coefficients) {
+            Some(solution) => {
+                coefficients = solution;
+                done = next;
+                step *= 2.0;
+            }
+            None => step *= 0.5,
+        }
+    }
+    SigmoidPolynomial(coefficients.as_vec3().into())
+}
+
+/// Newton's method for one colour; `None` if it does not converge in a few steps.
+fn newton(goal: DVec3, start: DVec3) -> Option<DVec3> {
+    let mut coefficients = start;
+    for _ in 0..12 {
+        let (rgb, jacobian) = colour(coefficients);
+        let residual = goal - rgb;
+        if residual.abs().max_element() < TOLERANCE {
+            return Some(coefficients);
+        }
+        coefficients += jacobian.inverse() * residual;
+        if !coefficients.is_finite() {
+            return None;
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The colour, under D65, of the polynomial that is used in the end, in single precision.
+    fn round_trip(rgb: [f32; 3]) -> [f64; 3] {
+        let polynomial = solve(rgb);
+        let d65 = named::d65();
+        let xyz = cie::integrate_xyz(|nm| polynomial.at(nm) * d65.at(nm));
+        cie::xyz_to_srgb(xyz).map(|c| c / f64::from(cie::y_integral()))
+    }
+
+    #[test]
+    fn colours_survive_the_round_trip() {
+        // The corners and edges of the cube included: the most saturated colours there are. What is lost is the rounding of
+        // coefficients to single precision.
+        let levels = [0.0, 0.001, 0.03, 0.2, 0.5, 0.8, 0.97, 1.0];
+        let mut worst = (0.0, [0.0; 3]);
+        for i in 0..512 {
+            let rgb = [levels[i / 64], levels[i / 8 % 8], levels[i % 8]];
+            if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
+                continue;
+            }
+            for (a, b) in round_trip(rgb).into_iter().zip(rgb) {
+                let error = (a - f64::from(b)).abs();
+                if error > worst.0 {
+                    worst = (error, rgb);
+                }
+            }
+        }
+        assert!(worst.0 < 2e-6, "{worst:?}");
+    }
+}

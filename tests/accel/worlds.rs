@@ -1,0 +1,269 @@
+//! Worlds to trace: each a name and a world of at most a thousand primitives.
+
+use std::sync::Arc;
+
+use lucerna::geometry::{Geometry, Group, Instance, Shape, Sphere, TriangleMesh, World, WorldBuilder};
+use lucerna::math::{AnimatedTransform, DAffine3, DQuat, DVec3, Vec3};
+
+use crate::rng::Rng;
+
+/// Unconnected triangles of one size in a cube.
+pub fn soup(rng: &mut Rng, count: usize, size: f32) -> TriangleMesh {
+    let mut positions = Vec::new();
+    for _ in 0..count {
+        let center = rng.cube();
+        positions.extend((0..3).map(|_| center + size * rng.cube()));
+    }
+    let indices = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    TriangleMesh::new(vec![positions], indices).unwrap()
+}
+
+/// The triangles of a grid of `n` by `n` quads over vertices in row order.
+fn grid_indices(n: u32) -> Vec<[u32; 3]> {
+    let mut indices = Vec::new();
+    for y in 0..n {
+        for x in 0..n {
+            let a = y * (n + 1) + x;
+            let (b, c, d) = (a + 1, a + n + 2, a + n + 1);
+            indices.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    indices
+}
+
+/// A flat square [-1, 1]² in z = 0: axis-parallel rays meet edges, vertices, and run within its plane.
+pub fn square(n: u32) -> TriangleMesh {
+    let at = |i: u32| 2.0 * i as f32 / n as f32 - 1.0;
+    let positions = (0..=n).flat_map(|y| (0..=n).map(move |x| Vec3::new(at(x), at(y), 0.0)));
+    TriangleMesh::new(vec![positions.collect()], grid_indices(n)).unwrap()
+}
+
+/// A hilly square.
+pub fn terrain(n: u32, height: f32) -> TriangleMesh {
+    let flat = square(n);
+    let lift = |p: &Vec3| {
+        Vec3::new(
+            p.x,
+            p.y,
+            height * ((7.0 * p.x).sin() * (5.0 * p.y).cos() + (31.0 * p.x * p.y).sin()),
+        )
+    };
+    TriangleMesh::new(
+        vec![flat.positions(0).iter().map(lift).collect()],
+        flat.indices().to_vec(),
+    )
+    .unwrap()
+}
+
+/// An octahedron, each face divided `levels` times, with its vertices at the distance that `radius` gives: a closed surface.
+pub fn ball(levels: u32, radius: impl Fn(Vec3) -> f32) -> TriangleMesh {
+    let mut positions = vec![Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let mut indices: Vec<[u32; 3]> = Vec::new();
+    for (x, y, z) in [
+        (0, 2, 4),
+        (2, 1, 4),
+        (1, 3, 4),
+        (3, 0, 4),
+        (2, 0, 5),
+        (1, 2, 5),
+        (3, 1, 5),
+        (0, 3, 5),
+    ] {
+        indices.push([x, y, z]);
+    }
+    for _ in 0..levels {
+        let mut middles = std::collections::HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                positions.push((positions[a as usize] + positions[b as usize]).normalize());
+                positions.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::new();
+        for [a, b, c] in indices {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        indices = finer;
+    }
+    let positions = positions.into_iter().map(|p| p * radius(p)).collect();
+    TriangleMesh::new(vec![positions], indices).unwrap()
+}
+
+/// A ball with bumps, which still sees all of itself from the middle.
+pub fn bumpy_ball(levels: u32) -> TriangleMesh {
+    ball(levels, |p| {
+        1.0 + 0.2 * (9.0 * p.x).sin() * (8.0 * p.y + 1.0).cos() * (7.0 * p.z).sin()
+    })
+}
+
+/// The axis-parallel cube [-1, 1]³.
+pub fn cube() -> TriangleMesh {
+    let at = |i: u32, bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+    let positions = (0..8).map(|i| Vec3::new(at(i, 1), at(i, 2), at(i, 4))).collect();
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let indices = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriangleMesh::new(vec![positions], indices).unwrap()
+}
+
+/// The mesh with each vertex moved.
+pub fn mapped(mesh: &TriangleMesh, map: impl Fn(Vec3) -> Vec3) -> TriangleMesh {
+    let positions = mesh.positions(0).iter().map(|&p| map(p)).collect();
+    TriangleMesh::new(vec![positions], mesh.indices().to_vec()).unwrap()
+}
+
+/// The mesh with a time step for each map.
+pub fn moving(mesh: &TriangleMesh, steps: &[&dyn Fn(Vec3) -> Vec3]) -> TriangleMesh {
+    let positions = |map: &&dyn Fn(Vec3) -> Vec3| mesh.positions(0).iter().map(|&p| map(p)).collect();
+    TriangleMesh::new(steps.iter().map(positions).collect(), mesh.indices().to_vec()).unwrap()
+}
+
+/// A world of geometries in world space.
+pub fn of_shapes(shapes: Vec<Shape>) -> Arc<World> {
+    let mut builder = WorldBuilder::default();
+    for shape in shapes {
+        let id = builder.add_geometry(Geometry::opaque(shape));
+        builder.root.geometries.push(id);
+    }
+    Arc::new(builder.build().unwrap())
+}
+
+pub fn of_mesh(mesh: TriangleMesh) -> Arc<World> {
+    of_shapes(vec![Shape::Mesh(mesh)])
+}
+
+/// A world of one group, placed by each transform.
+pub fn instanced(shapes: Vec<Shape>, places: impl IntoIterator<Item = AnimatedTransform>) -> Arc<World> {
+    let mut builder = WorldBuilder::default();
+    let geometries = shapes.into_iter().map(Geometry::opaque).collect::<Vec<_>>();
+    let geometries = geometries.into_iter().map(|g| builder.add_geometry(g)).collect();
+    let group = builder.add_group(Group {
+        geometries,
+        instances: Vec::new(),
+    });
+    for world_from_object in places {
+        builder.root.instances.push(Instance {
+            group,
+            world_from_object,
+            mask: u32::MAX,
+        });
+    }
+    Arc::new(builder.build().unwrap())
+}
+
+/// A rotation with scale and translation.
+pub fn place(rng: &mut Rng, scale: f64, spread: f32) -> DAffine3 {
+    let axis = rng.direction().as_dvec3().normalize();
+    let stretch = DVec3::new(1.0, f64::from(rng.range(0.5, 1.5)), f64::from(rng.range(0.5, 1.5)));
+    DAffine3::from_scale_rotation_translation(
+        scale * stretch,
+        DQuat::from_axis_angle(axis, f64::from(rng.range(0.0, 6.0))),
+        (spread * rng.cube()).as_dvec3(),
+    )
+}
+
+fn fixed(transform: DAffine3) -> AnimatedTransform {
+    AnimatedTransform::fixed(transform).unwrap()
+}
+
+fn spheres(rng: &mut Rng, count: usize) -> Shape {
+    let sphere = |_| {
+        let radius = f64::from(rng.range(0.02, 0.2));
+        Sphere::new(1.0, place(rng, radius, 1.0)).unwrap()
+    };
+    Shape::Spheres((0..count).map(sphere).collect())
+}
+
+/// Many of the same triangle, triangles without area, and triangles that share planes and edges.
+fn degenerate(rng: &mut Rng) -> TriangleMesh {
+    let mut positions: Vec<Vec3> = (0..60).map(|_| rng.cube()).collect();
+    let mut indices: Vec<[u32; 3]> = (0..40).map(|_| [0, 1, 2]).collect();
+    indices.extend((0..20u32).map(|i| [i, i, i + 1]));
+    indices.extend((0..20u32).map(|i| [i, i, i]));
+    for i in 0..20 {
+        let (a, b) = (positions[i], positions[i + 20]);
+        positions.push(0.5 * (a + b));
+        indices.push([i as u32, i as u32 + 20, positions.len() as u32 - 1]);
+    }
+    let flat = positions.len() as u32;
+    positions.extend((0..60).map(|_| rng.cube() * Vec3::new(1.0, 1.0, 0.0) + Vec3::new(0.0, 0.0, 0.25)));
+    indices.extend((0..20).map(|i| [flat + 3 * i, flat + 3 * i + 1, flat + 3 * i + 2]));
+    TriangleMesh::new(vec![positions], indices).unwrap()
+}
+
+/// All worlds of the agreement test.
+pub fn all() -> Vec<(&'static str, Arc<World>)> {
+    let rng = &mut Rng::new(1);
+    let unmoved: &dyn Fn(Vec3) -> Vec3 = &|p| p;
+    let shifted: &dyn Fn(Vec3) -> Vec3 = &|p| p * 0.7 + Vec3::new(0.5, -0.3, 0.2);
+    let twisted: &dyn Fn(Vec3) -> Vec3 = &|p| Vec3::new(p.y, -p.x, p.z + 0.3 * p.x);
+    let soup_moves = moving(&soup(rng, 300, 0.2), &[unmoved, shifted]);
+    let ball_moves = moving(&bumpy_ball(2), &[unmoved, shifted, twisted, unmoved]);
+    let both_move = vec![
+        Shape::Mesh(moving(&soup(rng, 100, 0.3), &[unmoved, shifted, twisted])),
+        Shape::Mesh(soup(rng, 100, 0.3)),
+        Shape::Mesh(moving(&soup(rng, 100, 0.3), &[shifted, twisted])),
+        spheres(rng, 20),
+    ];
+    let motion = |rng: &mut Rng| AnimatedTransform::new(place(rng, 0.3, 1.0), place(rng, 0.4, 1.0)).unwrap();
+    let huge = mapped(&soup(rng, 300, 0.2), |p| p * 1e18);
+    let far = mapped(&bumpy_ball(2), |p| p + Vec3::new(5e3, -3e3, 1e3));
+    let needles = mapped(&soup(rng, 300, 0.3), |p| p * Vec3::new(1.0, 1e-4, 1.0));
+    vec![
+        ("nothing", of_shapes(Vec::new())),
+        ("empty mesh", of_mesh(TriangleMesh::new(vec![vec![]], vec![]).unwrap())),
+        ("one triangle", of_mesh(soup(rng, 1, 1.0))),
+        ("soup", of_mesh(soup(rng, 900, 0.2))),
+        ("large triangles", of_mesh(soup(rng, 100, 2.0))),
+        ("square", of_mesh(square(16))),
+        ("terrain", of_mesh(terrain(20, 0.2))),
+        ("cube", of_mesh(cube())),
+        ("bumpy ball", of_mesh(bumpy_ball(3))),
+        ("degenerate", of_mesh(degenerate(rng))),
+        ("needles", of_mesh(needles)),
+        ("huge", of_mesh(huge)),
+        ("far", of_mesh(far)),
+        ("tiny", of_mesh(mapped(&bumpy_ball(2), |p| p * 1e-18))),
+        ("moving soup", of_mesh(soup_moves)),
+        ("moving ball of four steps", of_mesh(ball_moves)),
+        ("moving, fixed and spheres", of_shapes(both_move)),
+        ("spheres", of_shapes(vec![spheres(rng, 100)])),
+        (
+            "sphere of radius 1e5",
+            of_shapes(vec![Shape::Spheres(vec![
+                Sphere::at(DVec3::new(1e5 + 1.0, 0.0, 0.0), 1e5).unwrap(),
+            ])]),
+        ),
+        (
+            "instances",
+            instanced(
+                vec![Shape::Mesh(bumpy_ball(1)), spheres(rng, 10)],
+                (0..20).map(|_| fixed(place(rng, 0.3, 1.0))).collect::<Vec<_>>(),
+            ),
+        ),
+        (
+            "moving instances",
+            instanced(
+                vec![Shape::Mesh(bumpy_ball(1)), spheres(rng, 10)],
+                (0..10).map(|_| motion(rng)).collect::<Vec<_>>(),
+            ),
+        ),
+        (
+            "moving instances of moving meshes",
+            instanced(
+                vec![
+                    Shape::Mesh(moving(&cube(), &[unmoved, shifted])),
+                    Shape::Mesh(soup(rng, 30, 0.5)),
+                ],
+                (0..10).map(|_| motion(rng)).collect::<Vec<_>>(),
+            ),
+        ),
+    ]
+}

@@ -1,0 +1,212 @@
+//! What stands before `WorldBegin`: views and the integrator.
+
+use std::path::Path;
+
+use glam::{DAffine3, DVec3};
+use lucerna::desc::{
+    CameraKind, CropDesc, FilterKind, IntegratorDesc, LightSamplerKind, MotionDesc, PixelRect, SamplerKind,
+};
+
+use crate::scene;
+
+#[test]
+fn defaults_are_those_of_pbrt() {
+    let scene = scene("WorldBegin");
+    assert_eq!(scene.views.len(), 1);
+    let view = &scene.views[0];
+    assert_eq!(view.name, "camera");
+    let perspective = CameraKind::Perspective {
+        fov: 90.0,
+        near_clip: 0.0,
+    };
+    assert_eq!(view.camera.kind, perspective);
+    assert_eq!(view.camera.lens_radius, 0.0);
+    assert_eq!(view.camera.focal_distance, 1e6);
+    assert_eq!(view.camera.shutter, [0.0, 1.0]);
+    assert_eq!(view.camera.world_from_camera, MotionDesc::IDENTITY);
+    assert_eq!(view.film.resolution, [1280, 720]);
+    assert_eq!(view.film.crop, CropDesc::Full);
+    assert_eq!(view.film.filename, None);
+    assert_eq!(view.film.imaging_ratio(), 1.0);
+    assert_eq!(view.filter.kind, FilterKind::Gaussian { sigma: 0.5 });
+    assert_eq!(view.filter.radius, [1.5, 1.5]);
+    assert_eq!(view.sampler.kind, SamplerKind::Sobol);
+    assert_eq!(view.sampler.pixel_samples, 16);
+    let path = IntegratorDesc::Path {
+        max_depth: Some(5),
+        light_sampler: LightSamplerKind::Bvh,
+    };
+    assert_eq!(scene.integrator, path);
+    assert_eq!(scene.transform_times, [0.0, 1.0]);
+    assert_eq!(scene.materials.len(), 1);
+    assert!(scene.shapes.is_empty() && scene.lights.is_empty() && scene.warnings.is_empty());
+}
+
+#[test]
+fn every_parameter_arrives() {
+    let scene = scene(
+        r#"
+        TransformTimes 1 3
+        Camera "orthographic" "float screenwindow" [-2 3 -1 1] "float lensradius" .5 "float focaldistance" [ 7 ]
+            "float shutteropen" 1.5 "float shutterclose" 2 "string name" "from above"
+        Film "rgb" "integer xresolution" 200 "integer yresolution" [100] "string filename" "a/b.exr" "float iso" 400
+            "float cropwindow" [ .75 .25 0 1 ]
+        PixelFilter "mitchell" "float xradius" 3 "float B" .5 "float C" .25
+        Sampler "independent"
+        Integrator "path" "integer maxdepth" -1 "string lightsampler" "power" "bool regularize" false
+        WorldBegin"#,
+    );
+    let view = &scene.views[0];
+    assert_eq!(view.name, "from above");
+    assert_eq!(view.camera.kind, CameraKind::Orthographic);
+    assert_eq!(view.camera.screen_window([200, 100]), [-2.0, 3.0, -1.0, 1.0]);
+    assert_eq!(view.camera.lens_radius, 0.5);
+    assert_eq!(view.camera.focal_distance, 7.0);
+    assert_eq!(view.camera.shutter, [1.5, 2.0]);
+    assert_eq!(view.film.resolution, [200, 100]);
+    assert_eq!(view.film.filename.as_deref(), Some(Path::new("a/b.exr")));
+    // The exposure time is the shutter's: 0.5 * 400 / 100.
+    assert_eq!(view.film.imaging_ratio(), 2.0);
+    let crop = PixelRect {
+        x0: 50,
+        y0: 0,
+        x1: 150,
+        y1: 100,
+    };
+    assert_eq!(view.film.crop.pixels([200, 100]), crop);
+    assert_eq!(view.filter.kind, FilterKind::Mitchell { b: 0.5, c: 0.25 });
+    assert_eq!(view.filter.radius, [3.0, 2.0]);
+    assert_eq!(view.sampler.kind, SamplerKind::Independent);
+    assert_eq!(view.sampler.pixel_samples, 4);
+    let path = IntegratorDesc::Path {
+        max_depth: None,
+        light_sampler: LightSamplerKind::Power,
+    };
+    assert_eq!(scene.integrator, path);
+    assert_eq!(scene.transform_times, [1.0, 3.0]);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn filters_have_the_radii_of_pbrt() {
+    for (name, radius, kind) in [
+        ("box", 0.5, FilterKind::Box),
+        ("triangle", 2.0, FilterKind::Triangle),
+        ("sinc", 4.0, FilterKind::LanczosSinc { tau: 3.0 }),
+        ("blackmanharris", 2.0, FilterKind::BlackmanHarris),
+    ] {
+        let filter = scene(&format!("PixelFilter \"{name}\" WorldBegin")).views[0].filter;
+        assert_eq!((filter.radius, filter.kind), ([radius; 2], kind));
+    }
+}
+
+#[test]
+fn the_screen_window_follows_the_aspect_ratio() {
+    let camera = |text: &str| {
+        scene(&format!("Camera \"perspective\" {text} WorldBegin")).views[0]
+            .camera
+            .clone()
+    };
+    let plain = camera("\"float nearclip\" .25 \"float fov\" 40");
+    assert_eq!(plain.screen_window([200, 100]), [-2.0, 2.0, -1.0, 1.0]);
+    assert_eq!(plain.screen_window([100, 200]), [-1.0, 1.0, -2.0, 2.0]);
+    assert_eq!(plain.screen_window([7, 7]), [-1.0, 1.0, -1.0, 1.0]);
+    let kind = CameraKind::Perspective {
+        fov: 40.0,
+        near_clip: 0.25,
+    };
+    assert_eq!(plain.kind, kind);
+    let squeezed = camera("\"float frameaspectratio\" 4");
+    assert_eq!(squeezed.screen_window([7, 7]), [-4.0, 4.0, -1.0, 1.0]);
+}
+
+#[test]
+fn crops_are_rounded_up_and_clamped_as_in_pbrt() {
+    let film = |text: &str| {
+        let text = format!("Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 8 {text} WorldBegin");
+        let film = scene(&text).views[0].film.clone();
+        let PixelRect { x0, y0, x1, y1 } = film.crop.pixels(film.resolution);
+        [x0, x1, y0, y1]
+    };
+    assert_eq!(film("\"float cropwindow\" [.11 .52 0 .5]"), [2, 6, 0, 4]);
+    assert_eq!(film("\"integer pixelbounds\" [2 5 -3 900]"), [2, 5, 0, 8]);
+    assert_eq!(
+        film("\"integer pixelbounds\" [2 5 1 3] \"float cropwindow\" [0 .5 0 1]"),
+        [0, 5, 0, 8]
+    );
+}
+
+#[test]
+fn repeated_cameras_are_views_that_share_the_rest() {
+    let scene = scene(
+        r#"
+        Translate 0 0 5
+        Camera "perspective" "float shutterclose" .5
+        Identity
+        Camera "perspective" "string name" "side"
+        Film "rgb" "integer xresolution" 10
+        Camera "orthographic"
+        WorldBegin"#,
+    );
+    let names: Vec<&str> = scene.views.iter().map(|v| v.name.as_str()).collect();
+    assert_eq!(names, ["camera1", "side", "camera3"]);
+    let eye = |i: usize| scene.views[i].camera.world_from_camera.start.translation;
+    assert_eq!(eye(0), DVec3::new(0.0, 0.0, -5.0));
+    assert_eq!(eye(1), DVec3::ZERO);
+    assert!(scene.views.iter().all(|v| v.film.resolution == [10, 720]));
+    let exposure: Vec<f64> = scene.views.iter().map(|v| v.film.exposure_time).collect();
+    assert_eq!(exposure, [0.5, 1.0, 1.0]);
+}
+
+#[test]
+fn the_camera_is_where_look_at_puts_it() {
+    let scene = scene(
+        "LookAt 1 2 3  4 2 3  0 1 0 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\" Shape \"sphere\"",
+    );
+    let world_from_camera = scene.views[0].camera.world_from_camera;
+    assert!(world_from_camera.is_static());
+    let at = |p| world_from_camera.start.transform_vector3(p);
+    // It looks along +x with y up; pbrt's camera space is left-handed, so right is up x forward, towards -z.
+    let near = |a: DVec3, b: DVec3| a.distance(b) < 1e-12;
+    assert!(near(world_from_camera.start.translation, DVec3::new(1.0, 2.0, 3.0)));
+    assert!(near(at(DVec3::Z), DVec3::X) && near(at(DVec3::Y), DVec3::Y) && near(at(DVec3::X), DVec3::NEG_Z));
+    assert_eq!(scene.shapes[0].world_from_object, world_from_camera);
+}
+
+#[test]
+fn a_camera_may_move() {
+    let scene = scene(
+        "ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Scale 2 2 2
+         Camera \"perspective\" WorldBegin",
+    );
+    let motion = scene.views[0].camera.world_from_camera;
+    assert!(!motion.is_static());
+    // The inverse of a translation after a scale by 2.
+    let half = |x, y| {
+        DAffine3::from_scale_rotation_translation(DVec3::splat(0.5), glam::DQuat::IDENTITY, DVec3::new(x, y, 0.0))
+    };
+    assert!(motion.start.abs_diff_eq(half(-0.5, 0.0), 1e-15));
+    assert!(motion.end.abs_diff_eq(half(0.0, -0.5), 1e-15));
+}
+
+#[test]
+fn what_cannot_change_the_image_is_a_warning() {
+    let scene = scene(
+        r#"
+        Accelerator "bvh" "integer maxnodeprims" 4
+        Film "rgb" "float diagonal" 35 "bool savefp16" false "string sensor" "cie1931" "float whitebalance" 0
+        Sampler "halton" "string randomization" "owen" "integer seed" 3
+        Integrator "volpath"
+        Option "seed" 7
+        Option "disable-pixel-jitter" false
+        Integrator "path"
+        WorldBegin
+        Attribute "shape" "float alhpa" 1
+        Shape "sphere"
+        "#,
+    );
+    let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
+    assert_eq!(lines, [2, 3, 3, 4, 4, 4, 5, 6, 8, 10]);
+    assert!(scene.warnings[0].message.contains("--backend"));
+    assert_eq!(scene.views[0].sampler.kind, SamplerKind::Sobol);
+}
