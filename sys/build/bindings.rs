@@ -21,14 +21,12 @@ const FUNCTIONS: &[&str] = &[
     "rtcCommitScene",
     "rtcSetSceneBuildQuality",
     "rtcSetSceneFlags",
-    "rtcGetSceneBounds",
     // Geometry
     "rtcNewGeometry",
     "rtcReleaseGeometry",
     "rtcCommitGeometry",
     "rtcSetGeometryTimeStepCount",
     "rtcSetGeometryMask",
-    "rtcSetGeometryBuildQuality",
     "rtcSetSharedGeometryBuffer",
     "rtcSetNewGeometryBuffer",
     "rtcSetGeometryUserData",
@@ -40,6 +38,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcSetGeometryOccludedFilterFunction",
     "rtcSetGeometryInstancedScene",
     "rtcSetGeometryTransform",
+    "rtcGetGeometryTransform",
     "rtcSetGeometryTransformQuaternion",
     // src/shim.h
     "embree_.*",

@@ -102,18 +102,6 @@ bool embree_occluded8_stream(RTCScene scene, EmbreeQuery* query, struct RTCRay8*
   return false;
 }
 
-void embree_filter_intersection(const struct RTCIntersectFunctionNArguments* args,
-                                const struct RTCFilterFunctionNArguments* filter_args)
-{
-  rtcInvokeIntersectFilterFromGeometry(args, filter_args);
-}
-
-void embree_filter_occlusion(const struct RTCOccludedFunctionNArguments* args,
-                             const struct RTCFilterFunctionNArguments* filter_args)
-{
-  rtcInvokeOccludedFilterFromGeometry(args, filter_args);
-}
-
 #else
 
 void embree_intersect1(RTCScene scene, EmbreeQuery* query, struct RTCRayHit* rayhit)
@@ -160,18 +148,6 @@ bool embree_occluded8_stream(RTCScene scene, EmbreeQuery* query, struct RTCRay8*
   return true;
 }
 
-void embree_filter_intersection(const struct RTCIntersectFunctionNArguments* args,
-                                const struct RTCFilterFunctionNArguments* filter_args)
-{
-  rtcFilterIntersection(args, filter_args);
-}
-
-void embree_filter_occlusion(const struct RTCOccludedFunctionNArguments* args,
-                             const struct RTCFilterFunctionNArguments* filter_args)
-{
-  rtcFilterOcclusion(args, filter_args);
-}
-
 #endif
 
 PACKET_CALLS(4)
@@ -179,26 +155,19 @@ PACKET_CALLS(8)
 PACKET_CALLS(16)
 
 /* A packet of N is N floats for each field, in the order of the declaration; the accessors in Embree's headers are C++. */
-void embree_accept_hit(const struct RTCIntersectFunctionNArguments* args, unsigned int lane, float t, const float* ng, float u,
-                       float v)
+void embree_accept_hit(const struct RTCIntersectFunctionNArguments* args, unsigned int lane, float t)
 {
   const unsigned int N = args->N;
   float* ray = (float*)args->rayhit;
-  float* hit = ray + 12 * N;
-  unsigned int* ids = (unsigned int*)hit;
+  unsigned int* hit = (unsigned int*)(ray + 12 * N);
   ray[8 * N + lane] = t;
-  hit[0 * N + lane] = ng[0];
-  hit[1 * N + lane] = ng[1];
-  hit[2 * N + lane] = ng[2];
-  hit[3 * N + lane] = u;
-  hit[4 * N + lane] = v;
-  ids[5 * N + lane] = args->primID;
-  ids[6 * N + lane] = args->geomID;
+  hit[5 * N + lane] = args->primID;
+  hit[6 * N + lane] = args->geomID;
   for (unsigned int level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level)
   {
-    ids[(7 + level) * N + lane] = args->context->instID[level];
+    hit[(7 + level) * N + lane] = args->context->instID[level];
 #if RTC_VERSION_MAJOR >= 4 && defined(RTC_GEOMETRY_INSTANCE_ARRAY)
-    ids[(7 + RTC_MAX_INSTANCE_LEVEL_COUNT + level) * N + lane] = args->context->instPrimID[level];
+    hit[(7 + RTC_MAX_INSTANCE_LEVEL_COUNT + level) * N + lane] = args->context->instPrimID[level];
 #endif
   }
 }

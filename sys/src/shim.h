@@ -70,16 +70,8 @@ bool embree_occluded1_stream(RTCScene scene, EmbreeQuery* query, struct RTCRay* 
 bool embree_intersect8_stream(RTCScene scene, EmbreeQuery* query, struct RTCRayHit8* packets, unsigned int count);
 bool embree_occluded8_stream(RTCScene scene, EmbreeQuery* query, struct RTCRay8* packets, unsigned int count);
 
-/* In an intersect callback of a user geometry: lane `lane` of the packet is hit at distance `t`. It writes the hit whole, the
- * instances of `args->context` included, and the ray's tfar. `ng` has three components and need not be normalised. */
-void embree_accept_hit(const struct RTCIntersectFunctionNArguments* args, unsigned int lane, float t, const float* ng, float u,
-                       float v);
-
-/* In callbacks of a user geometry, after embree_accept_hit (intersect) or instead of it (occluded): asks the geometry's filter
- * function about the candidates in `filter_args`, which the filter may turn away by valid = 0. */
-void embree_filter_intersection(const struct RTCIntersectFunctionNArguments* args,
-                                const struct RTCFilterFunctionNArguments* filter_args);
-void embree_filter_occlusion(const struct RTCOccludedFunctionNArguments* args,
-                             const struct RTCFilterFunctionNArguments* filter_args);
+/* In an intersect callback of a user geometry: lane `lane` of the packet is hit at distance `t`, which becomes the ray's tfar.
+ * Of the hit it writes the ids: primitive, geometry, and the instances of `args->context`. */
+void embree_accept_hit(const struct RTCIntersectFunctionNArguments* args, unsigned int lane, float t);
 
 #endif

@@ -1,32 +1,129 @@
-//! Debian's Embree.
+//! Debian's Embree, version 3 or 4.
+//!
+//! A [`World`] becomes one Embree scene for each group and one for the root, which holds the geometries in world space and the
+//! instances. Meshes share the world's arrays; spheres are user geometry, intersected in double precision by
+//! [`Sphere::intersect`](crate::geometry::Sphere::intersect); only filtered geometry has a filter function.
+//!
+//! # Which call serves which kind of ray
+//!
+//! Measured in robust mode on one thread (AVX2; a room with a displaced sphere of 160k triangles, and one with 7000 boxes), Mrays/s
+//! with Embree 3.13.5, repacking included:
+//!
+//! | | sphere | boxes |
+//! |---|---|---|
+//! | camera: **`intersect8` coherent** | 21.5 | 8.6 |
+//! | `intersect8` incoherent | 8.6 | 3.1 |
+//! | `intersect1` | 6.3 | 2.9 |
+//! | bounce: **`intersect8` incoherent** | 6.7 | 2.1 |
+//! | `intersect8` coherent | 4.8 | 1.4 |
+//! | `intersect1` | 5.7 | 2.0 |
+//! | shadow: **`occluded1M`** | 16.2 | 5.0 |
+//! | `occluded8` incoherent | 14.6 | 3.9 |
+//! | `occluded1` | 9.2 | 3.4 |
+//!
+//! Embree 4 has no streams; shadow rays take `occluded8` there.
+
+#![allow(
+    unsafe_code,
+    reason = "the only calls of C in this crate; each block says why it is sound"
+)]
+
+mod callbacks;
+mod device;
+#[cfg(test)]
+mod filter_tests;
+mod motion;
+mod query;
+mod scene;
+#[cfg(test)]
+mod shuffle_tests;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
-use super::{Accel, AccelInfo, BuildOptions, HitFilter, RayKind};
-use crate::error::Result;
-use crate::geometry::{HitPacket, RayPacket, World};
+use embree_sys as ffi;
 
-/// A committed Embree scene.
-pub struct EmbreeScene;
+use self::device::Device;
+use self::query::Query;
+use self::scene::Scenes;
+use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
+use crate::error::Result;
+use crate::geometry::{HitPacket, InstanceId, RayPacket, World};
+
+/// A world in Embree's trees.
+pub struct EmbreeScene {
+    scenes: Scenes,
+    world: Arc<World>,
+    device: Arc<Device>,
+}
 
 impl EmbreeScene {
-    /// Builds it.
-    pub fn build(_world: &Arc<World>, _options: &BuildOptions) -> Result<Self> {
-        Ok(Self)
+    /// Builds the trees of `world`, on `options.threads` threads.
+    ///
+    /// # Errors
+    /// [`Error::Backend`](crate::Error::Backend) with the first error that Embree reports.
+    pub fn build(world: &Arc<World>, options: &BuildOptions) -> Result<Self> {
+        let device = Device::new(options.threads)?;
+        let scenes = scene::build(world, &device, options)?;
+        device.check()?;
+        Ok(Self {
+            scenes,
+            world: Arc::clone(world),
+            device,
+        })
+    }
+
+    fn query<'a>(&'a self, kind: RayKind, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
+        Query {
+            scene: &self.scenes.root,
+            filter,
+            first_instance: self.scenes.first_instance,
+            coherent: kind == RayKind::Camera,
+        }
+    }
+
+    /// Embree's (geometry, instance) of a hit as the world's (geometry, instance).
+    #[inline]
+    fn resolve(&self, geometry: u32, instance: u32) -> (u32, u32) {
+        let (members, instance) = if instance == ffi::EMBREE_INVALID_ID {
+            (self.world.root(), HitPacket::NONE)
+        } else {
+            let id = InstanceId(instance - self.scenes.first_instance);
+            let group = self.world.instance(id).group;
+            (self.world.groups()[group.index()].as_slice(), id.0)
+        };
+        (members[geometry as usize].0, instance)
     }
 }
 
 impl Accel for EmbreeScene {
-    fn intersect(&self, _: RayKind, _: &[RayPacket], _: &mut [HitPacket], _: Option<&dyn HitFilter>) {}
-    fn occluded(&self, _: RayKind, _: &mut [RayPacket], _: Option<&dyn HitFilter>) {}
-    fn is_mate_independent(&self, _: RayKind) -> bool {
-        true
+    fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
+        assert_eq!(rays.len(), hits.len(), "a packet of hits for each packet of rays");
+        self.query(kind, filter)
+            .intersect8(rays, hits, |geometry, instance| self.resolve(geometry, instance));
     }
+
+    fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+        let query = self.query(kind, filter);
+        if kind != RayKind::Camera && ffi::EMBREE_HAS_STREAMS == 1 {
+            query.occluded_stream(rays);
+        } else {
+            query.occluded8(rays);
+        }
+    }
+
+    /// Coherent packets share one traversal: seen are some ten answers in a thousand that change with the mates, of rays aimed at
+    /// vertices and edges. Incoherent packets and streams answer each ray by itself: none seen in 10^5.
+    fn is_mate_independent(&self, kind: RayKind) -> bool {
+        kind != RayKind::Camera
+    }
+
     fn info(&self) -> AccelInfo {
         AccelInfo {
-            backend: super::Backend::Embree,
-            version: String::new(),
-            memory: 0,
+            backend: Backend::Embree,
+            version: self.device.version(),
+            memory: self.device.memory(),
         }
     }
 }

@@ -1,0 +1,166 @@
+//! The calls that trace rays.
+
+use std::ffi::{c_int, c_uint, c_void};
+use std::mem::{MaybeUninit, align_of, offset_of, size_of};
+use std::panic::resume_unwind;
+
+use embree_sys as ffi;
+
+use super::callbacks::QueryData;
+use super::scene::SceneHandle;
+use crate::accel::HitFilter;
+use crate::geometry::{HitPacket, LANES, RayPacket};
+
+/// Asserts that a `RayPacket` is an `RTCRay8`: queries pass the one for the other.
+macro_rules! assert_same_layout {
+    ($($field:ident)*) => {
+        const _: () = {
+            assert!(size_of::<RayPacket>() == size_of::<ffi::RTCRay8>());
+            assert!(align_of::<RayPacket>() == align_of::<ffi::RTCRay8>());
+            $(assert!(offset_of!(RayPacket, $field) == offset_of!(ffi::RTCRay8, $field));)*
+        };
+    };
+}
+assert_same_layout! { org_x org_y org_z tnear dir_x dir_y dir_z time tfar mask id flags }
+
+/// Packets that go into one call of a stream: their rays, as Embree wants them there, fit the first level cache.
+const STREAM_PACKETS: usize = 32;
+
+/// Which lanes take part, as Embree wants it: -1 or 0.
+#[repr(C, align(32))]
+struct Valid([c_int; LANES]);
+
+impl Valid {
+    #[inline]
+    fn of(rays: &RayPacket) -> Self {
+        Self(std::array::from_fn(|lane| -c_int::from(rays.is_active(lane))))
+    }
+
+    #[inline]
+    fn any(&self) -> bool {
+        self.0 != [0; LANES]
+    }
+}
+
+/// A committed scene, and what goes with every call about it.
+pub struct Query<'a> {
+    /// The scene.
+    pub scene: &'a SceneHandle,
+    /// Asked about hits on filtered geometry.
+    pub filter: Option<&'a dyn HitFilter>,
+    /// Embree's ids of instances start here.
+    pub first_instance: u32,
+    /// Whether the rays of a packet are neighbours.
+    pub coherent: bool,
+}
+
+impl Query<'_> {
+    /// Nearest hits, in packets of 8. `resolve` turns Embree's (geometry, instance) of a hit into the world's.
+    pub fn intersect8(&self, rays: &[RayPacket], hits: &mut [HitPacket], resolve: impl Fn(u32, u32) -> (u32, u32)) {
+        self.run(|query| {
+            // SAFETY: numbers only, for which zero is a value.
+            let mut packet: ffi::RTCRayHit8 = unsafe { MaybeUninit::zeroed().assume_init() };
+            for (rays, hits) in rays.iter().zip(hits) {
+                *hits = HitPacket {
+                    t: rays.tfar,
+                    ..HitPacket::EMPTY
+                };
+                let valid = Valid::of(rays);
+                if !valid.any() {
+                    continue;
+                }
+                // SAFETY: the layouts are the same, as asserted above, and both are plain numbers.
+                packet.ray = unsafe { *(&raw const *rays).cast::<ffi::RTCRay8>() };
+                packet.hit.geomID = [ffi::EMBREE_INVALID_ID; LANES];
+                packet.hit.instID[0] = [ffi::EMBREE_INVALID_ID; LANES];
+                // SAFETY: the scene is committed; mask, packet and query are live, aligned, and this thread's own.
+                unsafe { ffi::embree_intersect8(valid.0.as_ptr(), self.scene.raw(), query, &raw mut packet) };
+                hits.t = packet.ray.tfar;
+                let found = &packet.hit;
+                for lane in 0..LANES {
+                    if found.geomID[lane] != ffi::EMBREE_INVALID_ID {
+                        (hits.geometry[lane], hits.instance[lane]) = resolve(found.geomID[lane], found.instID[0][lane]);
+                        hits.primitive[lane] = found.primID[lane];
+                    }
+                }
+            }
+        });
+    }
+
+    /// Occlusion, in packets of 8.
+    pub fn occluded8(&self, rays: &mut [RayPacket]) {
+        self.run(|query| {
+            for rays in rays {
+                let valid = Valid::of(rays);
+                if valid.any() {
+                    let packet = (&raw mut *rays).cast::<ffi::RTCRay8>();
+                    // SAFETY: as in `intersect8`; the layouts are the same, as asserted above.
+                    unsafe { ffi::embree_occluded8(valid.0.as_ptr(), self.scene.raw(), query, packet) };
+                }
+            }
+        });
+    }
+
+    /// Occlusion, in streams of single rays. Only where there are streams (`EMBREE_HAS_STREAMS`).
+    pub fn occluded_stream(&self, rays: &mut [RayPacket]) {
+        self.run(|query| {
+            let mut stream = Vec::with_capacity(STREAM_PACKETS * LANES);
+            for packets in rays.chunks_mut(STREAM_PACKETS) {
+                stream.clear();
+                for packet in &*packets {
+                    stream.extend(active_lanes(packet).map(|lane| single(packet, lane)));
+                }
+                let count = stream.len() as c_uint;
+                // SAFETY: the scene is committed; the stream has `count` rays, and is this thread's own, as is the query.
+                let traced =
+                    unsafe { ffi::embree_occluded1_stream(self.scene.raw(), query, stream.as_mut_ptr(), count) };
+                debug_assert!(traced, "streams are asked for only where they exist");
+                let mut traced = stream.iter();
+                for packet in packets {
+                    let active: [bool; LANES] = std::array::from_fn(|lane| packet.is_active(lane));
+                    for lane in (0..LANES).filter(|&lane| active[lane]) {
+                        if traced.next().is_some_and(|ray| ray.tfar == f32::NEG_INFINITY) {
+                            packet.tfar[lane] = f32::NEG_INFINITY;
+                        }
+                    }
+                }
+            }
+        });
+    }
+
+    /// Makes a query for `calls`, and goes on with the panic of a callback once Embree has returned.
+    fn run(&self, calls: impl FnOnce(*mut ffi::EmbreeQuery)) {
+        let data = QueryData::new(self.filter, self.first_instance);
+        let user = (&raw const data).cast_mut().cast::<c_void>();
+        let mut query = MaybeUninit::uninit();
+        // SAFETY: it fills the query; `data` outlives it.
+        unsafe { ffi::embree_query_init(query.as_mut_ptr(), self.coherent, None, user) };
+        calls(query.as_mut_ptr());
+        if let Some(payload) = data.into_panic() {
+            resume_unwind(payload);
+        }
+    }
+}
+
+fn active_lanes(packet: &RayPacket) -> impl Iterator<Item = usize> {
+    (0..LANES).filter(|&lane| packet.is_active(lane))
+}
+
+/// One ray of a packet.
+#[inline]
+fn single(packet: &RayPacket, lane: usize) -> ffi::RTCRay {
+    ffi::RTCRay {
+        org_x: packet.org_x[lane],
+        org_y: packet.org_y[lane],
+        org_z: packet.org_z[lane],
+        tnear: packet.tnear[lane],
+        dir_x: packet.dir_x[lane],
+        dir_y: packet.dir_y[lane],
+        dir_z: packet.dir_z[lane],
+        time: packet.time[lane],
+        tfar: packet.tfar[lane],
+        mask: packet.mask[lane],
+        id: packet.id[lane],
+        flags: 0,
+    }
+}
