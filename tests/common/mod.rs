@@ -8,6 +8,7 @@
 
 pub mod chi2;
 pub mod means;
+pub mod microfacet;
 pub mod random;
 pub mod reference;
 pub mod render;
