@@ -8,6 +8,7 @@ pub mod brute;
 pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
+pub mod judge;
 
 use std::fmt;
 use std::str::FromStr;
