@@ -158,23 +158,30 @@ fn rounding_error(p: DVec3, n: Vec3) -> f64 {
     n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(1))
 }
 
+/// The least error, relative to the size of a primitive: where a plane through the origin is exact a ray must start off it all
+/// the same, and by more than the smallest numbers there are.
+pub const LEAST_ERROR: f64 = 1.0 / (1_u64 << 36) as f64;
+
 /// How far from its plane a backend may see a triangle, for a ray that starts on it.
 ///
 /// A backend computes T = ng . (v - o), a distance times |ng|, from corners relative to the origin, in single precision. With
 /// extents E of the triangle, an element of ng = e x e' is off by some 14 u E E (u the unit roundoff: edges are off by 3 u E, and
 /// two products and their difference round), the corner by u E, the sum by 3 u; together 22 u E E E for each of three terms. Half
-/// of this worst case is never exceeded in tests. It vanishes where the triangle is perpendicular to an axis, as the sum then has
-/// one term and the rest is exact.
+/// of this worst case is never exceeded in tests. Where the triangle is perpendicular to an axis only [`LEAST_ERROR`]
+/// is left, as the sum then has one term and the rest is exact.
 pub fn triangle_error(vertices: &[DVec3; 3]) -> f64 {
     let [a, b, c] = *vertices;
     let extent = a.max(b).max(c) - a.min(b).min(c);
     let area = (b - a).cross(c - a).length();
+    let size = extent.max_element();
     let volume = extent.x * extent.y * extent.z;
-    if volume == 0.0 {
-        return 0.0;
-    }
+    let plane = if volume == 0.0 {
+        0.0
+    } else {
+        f64::from(gamma(32)) * volume / area
+    };
     // The plane of a sliver means nothing; a thousandth of its size is as far as a ray may be moved.
-    (f64::from(gamma(32)) * volume / area).min(1e-3 * extent.max_element())
+    plane.clamp(LEAST_ERROR * size, 1e-3 * size)
 }
 
 fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
@@ -262,7 +269,7 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
     LocalSurface {
         p,
         // The test that a backend makes is in double precision.
-        error: 0.0,
+        error: LEAST_ERROR * (p - sphere.center()).length(),
         t,
         ng,
         ns: ng,

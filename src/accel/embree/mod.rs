@@ -74,6 +74,11 @@ impl EmbreeScene {
         })
     }
 
+    /// The committed scene, for benchmarks that call Embree directly. It lives as long as `self`.
+    pub fn raw_scene(&self) -> ffi::RTCScene {
+        self.scenes.root.raw()
+    }
+
     fn query<'a>(&'a self, kind: RayKind, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
         Query {
             scene: &self.scenes.root,
