@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::common::render::Judge;
-use super::{check, grey, mean_over, options, quad};
+use super::{check, grey, mean_along, options, quad};
 
 /// An emitter of radiance 1 on both sides.
 fn lamp(shape: &str) -> String {
@@ -89,7 +89,7 @@ fn rays_start_on_the_near_plane() {
             options(0)
         );
         let expected = grey((0..64).map(|i| if i % 8 < 4 { 1.0 } else { right }));
-        check(&format!("near plane at {near}"), &text, 16, [1, 1], &EDGES, |_| {
+        check(&format!("near plane at {near}"), &text, 256, [1, 1], &EDGES, |_| {
             expected.clone()
         });
     }
@@ -109,7 +109,7 @@ fn a_lens_blurs_what_is_out_of_focus() {
             let s = s.clamp(-1.0, 1.0);
             (s.acos() - s * (1.0 - s * s).sqrt()) / PI
         };
-        let column = |i: usize| mean_over(pixel(i, -Z, Z), [0.0, 1.0], |x, _| beyond(EDGE - x));
+        let column = |i: usize| mean_along(pixel(i, -Z, Z), |x| beyond(EDGE - x));
         let expected = grey((0..8).map(column));
         let text = format!(
             "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" {radius} \"float focaldistance\" {focus}\n\

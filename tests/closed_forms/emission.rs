@@ -65,7 +65,7 @@ fn light_comes_from_the_side_of_the_normal_or_from_both() {
     ];
     for (name, sides, orientation, expected) in cases {
         let text = emitter(&format!("{light} {sides}"), "", "", orientation);
-        check_uniform(name, &text, 16, |_| [expected; 3]);
+        check_uniform(name, &text, 64, |_| [expected; 3]);
     }
 }
 

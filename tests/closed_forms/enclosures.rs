@@ -93,7 +93,7 @@ fn what_loses_nothing_is_invisible_in_a_closed_box() {
     for (name, material) in [
         ("glass", "\"dielectric\" \"float eta\" 1.5"),
         ("an air bubble", "\"dielectric\" \"float eta\" 0.75"),
-        ("dispersive glass", "\"dielectric\" \"spectrum eta\" \"glass-SF11\""),
+        ("dispersive glass", "\"dielectric\" \"spectrum eta\" \"glass-F11\""),
         ("a mirror", "\"conductor\" \"rgb reflectance\" [1 1 1]"),
         ("white paint", "\"diffuse\" \"rgb reflectance\" [1 1 1]"),
     ] {

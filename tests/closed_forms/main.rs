@@ -66,6 +66,13 @@ fn mean_over([x0, x1]: [f64; 2], [y0, y1]: [f64; 2], f: impl Fn(f64, f64) -> f64
     points.sum::<f64>() / (STEPS * STEPS) as f64
 }
 
+/// The mean of `f` over an interval, by the midpoint rule, in steps that find an edge.
+fn mean_along([x0, x1]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: usize = 1 << 14;
+    let points = (0..STEPS).map(|i| f(x0 + (x1 - x0) * (i as f64 + 0.5) / STEPS as f64));
+    points.sum::<f64>() / STEPS as f64
+}
+
 /// Three equal channels for each value.
 fn grey(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values.into_iter().flat_map(|v| [v; 3]).collect()

@@ -10,7 +10,8 @@ use super::{check, grey, mean_over, options, quad};
 const SIDE: f64 = 2.0;
 /// Blocks of 2 x 2 pixels.
 const BLOCKS: usize = 4;
-const JUDGE: Judge = Judge { power: (0.05, 0.01) };
+/// A block that is dark for most of the exposure is noisy.
+const JUDGE: Judge = Judge { power: (0.1, 0.01) };
 
 /// A scene under a white sky, seen by parallel rays along +z (x to the right, y up); `shutter` is in scene time.
 fn scene(before: &str, shutter: [f64; 2], world: &str) -> String {
@@ -34,7 +35,7 @@ fn check_exposure(name: &str, text: &str, dark: impl Fn(f64, f64) -> f64) {
         mean_over([x, x + size], [y - size, y], |x, y| 1.0 - dark(x, y))
     };
     let expected = grey((0..BLOCKS * BLOCKS).map(block));
-    check(name, text, 512, [2, 2], &JUDGE, |_| expected.clone());
+    check(name, text, 1024, [2, 2], &JUDGE, |_| expected.clone());
 }
 
 /// The share of [open, close] within [a, b].
