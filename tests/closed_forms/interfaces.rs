@@ -69,7 +69,7 @@ fn a_smooth_boundary_reflects_as_fresnel_says() {
     for theta in [20.0, 60.0, 80.0] {
         let cos = direction(theta, 0.0).z;
         let text = plane(theta, 25.0, 4, &black_ground, "\"dielectric\" \"float eta\" 1.5");
-        check_uniform(&format!("glass at {theta}"), &text, 256, |_| {
+        check_uniform(&format!("glass at {theta}"), &text, 4096, |_| {
             [dielectric_reflectance(cos, 1.5); 3]
         });
         let gold = "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"";

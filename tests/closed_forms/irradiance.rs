@@ -15,14 +15,14 @@ const SPP: u32 = 256;
 /// Judges a diffuse plane at z = Z where `lights`, which are white and above it, give the irradiance `e`. The camera looks straight
 /// down on x, y in [-2, 2] from just above the plane, so that no light is in its way.
 fn check_irradiance(name: &str, max_depth: i32, lights: &str, e: impl Fn(DVec3) -> f64) {
-    check_with(name, &options(max_depth), lights, e);
+    check_with(name, SPP, &options(max_depth), lights, e);
 }
 
-fn check_with(name: &str, options: &str, lights: &str, e: impl Fn(DVec3) -> f64) {
+fn check_with(name: &str, spp: u32, options: &str, lights: &str, e: impl Fn(DVec3) -> f64) {
     let text = format!(
         "LookAt 0 0 0.36  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-2 2 -2 2]\n{options}WorldBegin\n\
          {lights}\nMaterial \"diffuse\" \"rgb reflectance\" [{RHO} {RHO} {RHO}]\n{}",
-        quad([-30.0, -30.0, Z], [60.0, 0.0, 0.0], [0.0, 60.0, 0.0])
+        quad([-3.0, -3.0, Z], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0])
     );
     // Looking down with y up, x grows to the left.
     let block = |i: usize| {
@@ -30,7 +30,7 @@ fn check_with(name: &str, options: &str, lights: &str, e: impl Fn(DVec3) -> f64)
         mean_over([x - 1.0, x], [y - 1.0, y], |x, y| RHO / PI * e(DVec3::new(x, y, Z)))
     };
     let expected = grey((0..16).map(block));
-    check(name, &text, SPP, [2, 2], &Judge::USUAL, |_| expected.clone());
+    check(name, &text, spp, [2, 2], &Judge::USUAL, |_| expected.clone());
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn lights_add_up() {
     for sampler in ["bvh", "power", "uniform"] {
         let by_this = format!("Integrator \"path\" \"string lightsampler\" \"{sampler}\"");
         let options = options(1).replace("Integrator \"path\"", &by_this);
-        check_with(&format!("four lights by {sampler}"), &options, lights, |p| {
+        check_with(&format!("four lights by {sampler}"), 2 * SPP, &options, lights, |p| {
             0.3 * PI + 1.5 + 9.0 * 3.0 / (9.0 + p.x * p.x + p.y * p.y).powf(1.5)
         });
     }
