@@ -164,9 +164,9 @@ fn to_world(
     }
 }
 
-/// How far rounding to single precision moves `p` along the unit normal `n`.
+/// How far rounding to single precision can move `p`, and then the origin of a ray beside it, along the unit normal `n`.
 fn rounding_error(p: DVec3, n: Vec3) -> f64 {
-    n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(1))
+    n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(3))
 }
 
 /// The least error, relative to the size of a primitive: where a plane through the origin is exact a ray must start off it all
