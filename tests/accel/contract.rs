@@ -118,7 +118,7 @@ fn an_answer_depends_on_its_packet_mates_only_where_a_backend_says_so() {
 
 #[test]
 fn both_kernels_and_brute_force_give_the_same_bits() {
-    for (name, world) in worlds::all() {
+    for (name, world) in worlds::all().into_iter().chain(worlds::extreme()) {
         let rays = rays(&world, 8000, 37);
         let options = BuildOptions::default();
         let fast = Bvh::build(&world, &options);
