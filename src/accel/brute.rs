@@ -65,11 +65,10 @@ impl Brute {
             match &geometry.shape {
                 Shape::Mesh(mesh) => {
                     let corners = mesh.triangle(primitive, query.time).map(|p| p.to_array());
-                    let sheared = ray.shear.corners(&corners);
-                    if let Some(t) = sheared.distance()
+                    if let Some(t) = ray.shear.distance(&corners)
                         && query.contains(t)
                     {
-                        query.offer(&candidate(t), || sheared.barycentrics());
+                        query.offer(&candidate(t), || ray.shear.barycentrics(&corners));
                     }
                 }
                 Shape::Spheres(spheres) => {

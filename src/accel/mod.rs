@@ -8,6 +8,8 @@ pub mod brute;
 pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
+pub mod judge;
+pub mod record;
 
 use std::fmt;
 use std::str::FromStr;

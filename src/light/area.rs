@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use super::{LightDensity, LightEnd, LightSample};
-use crate::geometry::triangle_error;
+use crate::geometry::{LEAST_ERROR, triangle_error};
 use crate::math::{DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
@@ -154,7 +154,7 @@ impl AreaLight {
         };
         SurfaceSample {
             p,
-            error: ng.abs().dot(p.abs()) * gamma(1),
+            error: ng.abs().dot(p.abs()) * gamma(1) + (LEAST_ERROR * radius) as f32,
             ng,
             pdf,
         }

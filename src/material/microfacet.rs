@@ -28,6 +28,11 @@ impl Ggx {
         })
     }
 
+    /// Whether it is the same along both tangents.
+    pub fn is_isotropic(&self) -> bool {
+        self.alpha_x == self.alpha_y
+    }
+
     /// The slope for pbrt-v4's perceptual roughness.
     pub fn alpha_from_roughness(roughness: f32) -> f32 {
         roughness.sqrt()

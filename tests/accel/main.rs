@@ -1,7 +1,57 @@
-//! The ray query backends: that they agree with an f64 judge and with each other, that closed meshes let nothing out, and that
-//! the contract of [`lucerna::accel::Accel`] holds.
+//! The ray query backends: that they agree with an f64 judge and with each other, that closed meshes let nothing out, that rays
+//! do not meet the primitive they leave, and that the contract of [`lucerna::accel::Accel`] holds.
+//!
+//! `LUCERNA_TEST_TIER=full` traces a hundred and a thousand times as many rays. Counts are printed (`--nocapture` shows them).
 
 mod agreement;
+mod contract;
+mod leaks;
 mod rays;
 mod rng;
+mod spawn;
 mod worlds;
+
+use std::sync::Arc;
+
+use lucerna::accel::{Accel, Backend, BuildOptions, HitFilter, RayKind, build, bvh::Bvh};
+use lucerna::geometry::{Hit, HitPacket, LANES, Ray, RayPacket, World};
+
+/// Whether the long tier is asked for.
+fn is_full() -> bool {
+    std::env::var_os("LUCERNA_TEST_TIER").is_some_and(|tier| tier == "full")
+}
+
+/// All backends over a world, in robust mode, by name: those that can be chosen, and our BVH without vector instructions.
+fn backends(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
+    let options = BuildOptions::default();
+    let mut backends: Vec<(String, Box<dyn Accel>)> = Backend::AVAILABLE
+        .iter()
+        .map(|&backend| (backend.to_string(), build(backend, world, &options).unwrap()))
+        .collect();
+    backends.push(("portable bvh".into(), Box::new(Bvh::build_portable(world, &options))));
+    backends
+}
+
+/// What each ray hits, with the distance.
+fn intersect(accel: &dyn Accel, rays: &[Ray], filter: Option<&dyn HitFilter>) -> Vec<Option<(Hit, f32)>> {
+    let mut packets = Vec::new();
+    RayPacket::pack(rays.iter().copied(), &mut packets);
+    let mut hits = vec![HitPacket::EMPTY; packets.len()];
+    accel.intersect(RayKind::Bounce, &packets, &mut hits, filter);
+    let answer = |i: usize| {
+        hits[i / LANES]
+            .get(i % LANES)
+            .map(|hit| (hit, hits[i / LANES].t[i % LANES]))
+    };
+    (0..rays.len()).map(answer).collect()
+}
+
+/// Whether each ray is occluded.
+fn occluded(accel: &dyn Accel, rays: &[Ray], filter: Option<&dyn HitFilter>) -> Vec<bool> {
+    let mut packets = Vec::new();
+    RayPacket::pack(rays.iter().copied(), &mut packets);
+    accel.occluded(RayKind::Shadow, &mut packets, filter);
+    (0..rays.len())
+        .map(|i| packets[i / LANES].is_occluded(i % LANES))
+        .collect()
+}

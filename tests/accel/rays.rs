@@ -27,6 +27,8 @@ impl RayMaker {
             bounds.min = bounds.min.max(Vec3::splat(-3.0));
             bounds.max = bounds.max.min(Vec3::splat(3.0));
         }
+        // Rays start beyond a flat world too.
+        bounds = bounds.expand(0.25 * bounds.extent().max_element());
         let mut triangles = Vec::new();
         let mut add = |members: &[lucerna::geometry::GeometryId], place: &dyn Fn(Vec3, f32) -> Vec3| {
             for &id in members {
@@ -46,9 +48,9 @@ impl RayMaker {
         Self { bounds, triangles }
     }
 
-    /// Anywhere in the bounds, and somewhat beyond.
+    /// Anywhere in the bounds.
     fn point(&self, rng: &mut Rng) -> Vec3 {
-        self.bounds.center() + 0.75 * self.bounds.extent() * rng.cube()
+        self.bounds.center() + 0.5 * self.bounds.extent() * rng.cube()
     }
 
     /// A vertex, a point of an edge, or a point within a triangle.

@@ -13,7 +13,7 @@ use super::node::{Planes, WIDTH};
 use super::query::Query;
 use super::ray::{LocalRay, Slab};
 use super::traverse::{self, Level};
-use super::triangle::{DETERMINANTS, Shear, Sheared};
+use super::triangle::Shear;
 
 /// Proof that the processor has AVX2.
 #[derive(Clone, Copy, Debug)]
@@ -120,7 +120,8 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     let (scale_x, scale_y) = (_mm_set1_ps(shear.scale[0]), _mm_set1_ps(shear.scale[1]));
     let depth: Rows = [offset(0, 2), offset(1, 2), offset(2, 2)];
     let across = |axis: usize, scale: __m128| -> Rows {
-        [0, 1, 2].map(|corner| _mm_sub_ps(offset(corner, axis), _mm_mul_ps(scale, depth[corner])))
+        let sheared = |corner: usize| _mm_sub_ps(offset(corner, axis), _mm_mul_ps(scale, depth[corner]));
+        [sheared(0), sheared(1), sheared(2)]
     };
     let ([ax, bx, cx], [ay, by, cy]) = (across(0, scale_x), across(1, scale_y));
     let u = _mm_sub_ps(_mm_mul_ps(cx, by), _mm_mul_ps(cy, bx));
@@ -143,24 +144,23 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
         };
     }
 
-    let determinant = _mm_add_ps(_mm_add_ps(u, v), w);
-    let size = _mm_andnot_ps(_mm_set1_ps(-0.0), determinant);
-    let exact = _mm_and_ps(
-        _mm_cmpgt_ps(size, _mm_set1_ps(DETERMINANTS[0])),
-        _mm_cmplt_ps(size, _mm_set1_ps(DETERMINANTS[1])),
+    // Zero, or NaN where the products overflow.
+    let unsure = any(
+        _mm_cmpngt_ps(size(u), zero),
+        _mm_cmpngt_ps(size(v), zero),
+        _mm_cmpngt_ps(size(w), zero),
     );
-    let flat = any(_mm_cmpeq_ps(u, zero), _mm_cmpeq_ps(v, zero), _mm_cmpeq_ps(w, zero));
-    let inexact = possible & _mm_movemask_ps(_mm_or_ps(flat, _mm_cmpeq_ps(exact, zero))) as u32;
+    let planes = plane_distances(corners, shear);
+    let parallel = _mm_cmpnlt_ps(size(planes), _mm_set1_ps(f32::INFINITY));
+    let inexact = possible & _mm_movemask_ps(_mm_or_ps(unsure, parallel)) as u32;
 
-    let [az, bz, cz] = depth.map(|z| _mm_mul_ps(_mm_set1_ps(shear.scale[2]), z));
-    let inverse = _mm_div_ps(_mm_set1_ps(1.0), determinant);
-    let term = |volume, z| _mm_mul_ps(_mm_mul_ps(volume, inverse), z);
-    let t = _mm_add_ps(_mm_add_ps(term(u, az), term(v, bz)), term(w, cz));
+    let along = |corner: usize| _mm_mul_ps(_mm_set1_ps(shear.scale[2]), depth[corner]);
+    let (az, bz, cz) = (along(0), along(1), along(2));
     let least = _mm_min_ps(_mm_min_ps(az, bz), cz);
     let greatest = _mm_max_ps(_mm_max_ps(az, bz), cz);
-    let t = _mm_min_ps(_mm_max_ps(t, least), greatest);
+    let t = _mm_min_ps(_mm_max_ps(planes, least), greatest);
     let inside = _mm_and_ps(
-        _mm_cmpge_ps(t, _mm_set1_ps(range[0])),
+        _mm_cmpgt_ps(t, _mm_set1_ps(range[0])),
         _mm_cmple_ps(t, _mm_set1_ps(range[1])),
     );
     let mut distances = Aligned([0.0; LANES]);
@@ -176,14 +176,54 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     hits
 }
 
+#[target_feature(enable = "avx2")]
+#[inline]
+fn size(v: __m128) -> __m128 {
+    _mm_andnot_ps(_mm_set1_ps(-0.0), v)
+}
+
+/// Distances to the planes of four triangles, in double precision and then rounded.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn plane_distances(corners: &Corners, shear: &Shear) -> __m128 {
+    let corner = |corner: usize| {
+        let row = |axis: usize| {
+            let row: &[f32; LANES] = &corners.0[corner][shear.axes[axis]];
+            // SAFETY: four floats, aligned to 16 bytes as rows of `Corners` are.
+            _mm256_cvtps_pd(unsafe { _mm_load_ps(row.as_ptr()) })
+        };
+        [row(0), row(1), row(2)]
+    };
+    let splat = |v: &[f32; 3]| {
+        let element = |i: usize| _mm256_set1_pd(f64::from(v[i]));
+        [element(0), element(1), element(2)]
+    };
+    let minus = |a: &[__m256d; 3], b: &[__m256d; 3]| {
+        [
+            _mm256_sub_pd(a[0], b[0]),
+            _mm256_sub_pd(a[1], b[1]),
+            _mm256_sub_pd(a[2], b[2]),
+        ]
+    };
+    let a = corner(0);
+    let (e, f) = (minus(&corner(1), &a), minus(&corner(2), &a));
+    let product = |i: usize, j: usize| _mm256_sub_pd(_mm256_mul_pd(e[i], f[j]), _mm256_mul_pd(e[j], f[i]));
+    let n = [product(1, 2), product(2, 0), product(0, 1)];
+    let dot = |v: &[__m256d; 3]| {
+        let term = |i: usize| _mm256_mul_pd(n[i], v[i]);
+        _mm256_add_pd(_mm256_add_pd(term(0), term(1)), term(2))
+    };
+    let height = dot(&minus(&a, &splat(&shear.origin)));
+    _mm256_cvtpd_ps(_mm256_div_pd(height, dot(&splat(&shear.direction))))
+}
+
 /// Decides the lanes that single precision cannot.
 #[cold]
 #[inline(never)]
 fn resolve(hits: &mut TriangleHits, lanes: u32, corners: &Corners, shear: &Shear, range: [f32; 2]) {
     for lane in (0..LANES).filter(|lane| lanes >> lane & 1 != 0) {
-        let sheared: Sheared = shear.corners(&corners.lane(lane));
-        if let Some(t) = sheared.distance()
-            && t >= range[0]
+        if let Some(t) = shear.distance(&corners.lane(lane))
+            && t > range[0]
             && t <= range[1]
         {
             hits.mask |= 1 << lane;

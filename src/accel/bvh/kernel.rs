@@ -31,7 +31,7 @@ pub trait Kernel: Copy + Send + Sync {
     /// Which of eight boxes a ray meets in [tnear, tfar].
     fn boxes(self, planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits;
 
-    /// Which of four triangles whose mask shares a bit with `mask` a ray meets in [tnear, tfar].
+    /// Which of four triangles whose mask shares a bit with `mask` a ray meets in `range`: (tnear, tfar].
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits;
 
     /// [`traverse::group`] compiled for this kernel.
@@ -82,8 +82,8 @@ impl Kernel for Portable {
             if ids.mask[lane] & mask == 0 {
                 continue;
             }
-            if let Some(t) = shear.corners(&corners.lane(lane)).distance()
-                && t >= range[0]
+            if let Some(t) = shear.distance(&corners.lane(lane))
+                && t > range[0]
                 && t <= range[1]
             {
                 hits.mask |= 1 << lane;

@@ -48,7 +48,7 @@ impl Corners {
     /// Barycentric coordinates, for a filter, of the place where `ray` hits the triangle of a lane.
     #[cold]
     pub fn barycentrics(&self, lane: usize, ray: &LocalRay) -> [f32; 2] {
-        ray.shear.corners(&self.lane(lane)).barycentrics()
+        ray.shear.barycentrics(&self.lane(lane))
     }
 }
 

@@ -10,7 +10,7 @@ const CULL_SLACK: f32 = 1.0 + 16.0 * f32::EPSILON;
 
 /// The state of one ray's query.
 pub struct Query<'a> {
-    /// Hits nearer do not count.
+    /// Hits at this distance or nearer do not count.
     pub tnear: f32,
     /// Distance of the nearest hit so far, at first the ray's end.
     pub tfar: f32,
@@ -69,7 +69,7 @@ impl<'a> Query<'a> {
         self.ids[0] != HitPacket::NONE
     }
 
-    /// Takes a candidate in [tnear, tfar] if it precedes the nearest hit so far by (t, geometry, primitive, instance) and the
+    /// Takes a candidate in (tnear, tfar] if it precedes the nearest hit so far by (t, geometry, primitive, instance) and the
     /// filter accepts it; says whether it did. `uv` is asked only for a filter.
     #[inline(always)]
     pub fn offer(&mut self, candidate: &Candidate, uv: impl FnOnce() -> [f32; 2]) -> bool {
@@ -84,10 +84,10 @@ impl<'a> Query<'a> {
         true
     }
 
-    /// Whether a distance is in [tnear, tfar].
+    /// Whether a distance is in (tnear, tfar].
     #[inline(always)]
     pub fn contains(&self, t: f32) -> bool {
-        t >= self.tnear && t <= self.tfar
+        t > self.tnear && t <= self.tfar
     }
 
     /// Offers the hits with a sphere, the farther if the filter takes away the nearer.
@@ -96,9 +96,8 @@ impl<'a> Query<'a> {
         let Some(hits) = sphere.intersect(ray.origin.as_dvec3(), ray.direction.as_dvec3()) else {
             return false;
         };
-        let range = f64::from(self.tnear)..=f64::from(self.tfar);
-        let mut distances = [hits.enter, hits.leave].into_iter().filter(|t| range.contains(t));
-        distances.any(|t| self.offer(&candidate(t as f32), || [0.0; 2]))
+        let mut distances = [hits.enter as f32, hits.leave as f32].into_iter();
+        distances.any(|t| self.contains(t) && self.offer(&candidate(t), || [0.0; 2]))
     }
 
     /// Whether the filter, if any, accepts a candidate.

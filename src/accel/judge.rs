@@ -1,0 +1,376 @@
+//! The judge: decides in double precision what a ray may be said to hit.
+//!
+//! A backend works in single precision. Where a ray passes an edge, grazes a plane, or meets two surfaces at nearly one distance,
+//! more than one answer is right. The judge intersects every primitive in double precision with margins that bound what single
+//! precision may lose, and calls the ray [clear](Verdict::Clear) where that cannot change the answer, else
+//! [ambiguous](Verdict::Ambiguous), with all that may be answered.
+//!
+//! # Margins
+//!
+//! With u = 2^-24, the unit roundoff of `f32`:
+//!
+//! - A corner, relative to the ray's origin, is moved across the ray by at most 4u (|x| + |z|) in the watertight test of Woop,
+//!   Benthin and Wald (2013), x and z being its coordinates there. Tests by Plücker coordinates (Embree's robust mode) take cross
+//!   products of sums and differences of corners, with errors of the same form and a factor of about 10. The judge takes 16.
+//! - A moving corner is off by 3u of its coordinates, and by the rounding of time to a fraction of a segment.
+//! - Through an instance, origin and direction of the ray are off by the rounding of its transform: 16u of the sums of absolute
+//!   values of what is added there if it does not move, 64u if it does, as a backend may interpolate and invert it in single
+//!   precision.
+//!
+//! A corner's margin carries over to the edge functions, and from them to the distance as a mean of the corners' with their
+//! weights: see [`Line::triangle`].
+//!
+//! Spheres are intersected in double precision by the backends too; their margin is that of the ray through an instance, and
+//! 16 roundings of the `f64` operations in units of the distances involved.
+
+use std::sync::Arc;
+
+use crate::geometry::{Geometry, GeometryId, Hit, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
+use crate::math::{DAffine3, DMat3, DVec3};
+
+/// Unit roundoff of `f32`.
+const U: f64 = f32::EPSILON as f64 / 2.0;
+
+/// Of corners relative to the origin.
+const CORNER: f64 = 16.0 * U;
+/// Of corners that move.
+const MOTION: f64 = 3.0 * U;
+/// Of transforms of instances that do not move, and of those that do.
+const INSTANCE: [f64; 2] = [16.0 * U, 64.0 * U];
+/// Of distances themselves: two roundings, and the comparison with `tnear` and `tfar`.
+const DISTANCE: f64 = 16.0 * U;
+/// Of spheres.
+const SPHERE: f64 = 16.0 * f64::EPSILON;
+
+/// What may be answered about a ray.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Only this.
+    Clear(Option<Candidate>),
+    /// Any of these; a miss too if `miss`.
+    Ambiguous {
+        /// In order of the least distance that each may have.
+        candidates: Vec<Candidate>,
+        /// Whether nothing need be hit.
+        miss: bool,
+    },
+}
+
+/// A hit that may be answered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// What is hit.
+    pub hit: Hit,
+    /// The least and the greatest distance that may be answered, in units of the ray's direction.
+    pub t: [f64; 2],
+    /// Whether the ray certainly hits it (though something nearer may hide it).
+    pub certain: bool,
+}
+
+impl Candidate {
+    /// Whether a backend may answer this with distance `t`.
+    pub fn allows(&self, hit: Hit, t: f32) -> bool {
+        self.hit == hit && (self.t[0]..=self.t[1]).contains(&f64::from(t))
+    }
+}
+
+impl Verdict {
+    /// Whether it is clear.
+    pub fn is_clear(&self) -> bool {
+        matches!(self, Self::Clear(_))
+    }
+
+    /// Whether a backend may answer that the nearest hit is `answer`, with its distance.
+    pub fn allows(&self, answer: Option<(Hit, f32)>) -> bool {
+        match (self, answer) {
+            (Self::Clear(expected), Some((hit, t))) => expected.is_some_and(|candidate| candidate.allows(hit, t)),
+            (Self::Clear(expected), None) => expected.is_none(),
+            (Self::Ambiguous { candidates, .. }, Some((hit, t))) => candidates.iter().any(|c| c.allows(hit, t)),
+            (Self::Ambiguous { miss, .. }, None) => *miss,
+        }
+    }
+
+    /// Whether a backend may answer that the ray is occluded, or that it is not.
+    pub fn allows_occluded(&self, occluded: bool) -> bool {
+        match self {
+            Self::Clear(expected) => expected.is_some() == occluded,
+            Self::Ambiguous { miss, .. } => occluded || *miss,
+        }
+    }
+}
+
+/// Judges rays through a world.
+pub struct Judge {
+    world: Arc<World>,
+}
+
+impl Judge {
+    /// Over `world`.
+    pub fn new(world: &Arc<World>) -> Self {
+        Self {
+            world: Arc::clone(world),
+        }
+    }
+
+    /// The verdict about a [valid](Ray::is_valid) ray. Hits on filtered geometry count where `accept` says so.
+    pub fn judge(&self, ray: &Ray, accept: impl Fn(Hit) -> bool) -> Verdict {
+        let mut candidates = Vec::new();
+        if ray.tnear <= ray.tfar {
+            let line = Line::in_world(ray);
+            for &id in self.world.root() {
+                self.geometry(id, None, &line, ray, &mut candidates);
+            }
+            for (index, instance) in self.world.instances().iter().enumerate() {
+                if instance.mask & ray.mask == 0 {
+                    continue;
+                }
+                let line = Line::in_instance(ray, &instance.world_from_object.inverse_at(ray.time), {
+                    let margin = INSTANCE[usize::from(!instance.world_from_object.is_static())];
+                    margin * (1.0 + condition(&instance.world_from_object.at(ray.time).matrix3))
+                });
+                for &id in &self.world.groups()[instance.group.index()] {
+                    let instance = Some(InstanceId::from_index(index));
+                    self.geometry(id, instance, &line, ray, &mut candidates);
+                }
+            }
+        }
+        candidates.retain(|candidate| accept(candidate.hit));
+        decide(candidates)
+    }
+
+    fn geometry(&self, id: GeometryId, instance: Option<InstanceId>, line: &Line, ray: &Ray, out: &mut Vec<Candidate>) {
+        let geometry: &Geometry = self.world.geometry(id);
+        if geometry.mask & ray.mask == 0 {
+            return;
+        }
+        let mut add = |primitive: usize, found: Option<Found>| {
+            if let Some(found) = found {
+                out.push(Candidate {
+                    hit: Hit {
+                        geometry: id,
+                        primitive: PrimitiveId::from_index(primitive),
+                        instance,
+                    },
+                    t: found.t,
+                    certain: found.certain,
+                });
+            }
+        };
+        match &geometry.shape {
+            Shape::Mesh(mesh) => {
+                for triangle in 0..mesh.triangle_count() {
+                    let found = line.triangle(&corners(mesh, triangle, ray.time));
+                    add(triangle, found.and_then(|found| found.within(ray)));
+                }
+            }
+            Shape::Spheres(spheres) => {
+                for (index, sphere) in spheres.iter().enumerate() {
+                    add(index, line.sphere(sphere, ray));
+                }
+            }
+        }
+    }
+}
+
+/// Of what may be hit, what may be the nearest.
+fn decide(mut candidates: Vec<Candidate>) -> Verdict {
+    let certain = candidates.iter().filter(|candidate| candidate.certain);
+    let nearest = certain.map(|candidate| candidate.t[1]).fold(f64::INFINITY, f64::min);
+    candidates.retain(|candidate| candidate.t[0] <= nearest);
+    candidates.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
+    match candidates.as_slice() {
+        [] => Verdict::Clear(None),
+        [only] if only.certain => Verdict::Clear(Some(*only)),
+        _ => Verdict::Ambiguous {
+            miss: !candidates.iter().any(|candidate| candidate.certain),
+            candidates,
+        },
+    }
+}
+
+/// How many times a relative error of the matrix may grow in its inverse: |M| |M^-1| in the maximum norm.
+fn condition(m: &DMat3) -> f64 {
+    let norm = |m: DMat3| (m.abs() * DVec3::ONE).max_element();
+    norm(*m) * norm(m.inverse())
+}
+
+/// Corners at a time, each with how far it may be off along each axis.
+type Corners = [(DVec3, DVec3); 3];
+
+fn corners(mesh: &TriangleMesh, triangle: usize, time: f32) -> Corners {
+    let vertices = mesh.indices()[triangle].map(|v| v as usize);
+    if !mesh.is_moving() {
+        return vertices.map(|v| (mesh.positions(0)[v].as_dvec3(), DVec3::ZERO));
+    }
+    let segments = mesh.time_steps() - 1;
+    let scaled = f64::from(time) * segments as f64;
+    let step = (scaled as usize).min(segments - 1);
+    let fraction = scaled - step as f64;
+    vertices.map(|v| {
+        let at = |step: usize| mesh.positions(step)[v].as_dvec3();
+        let (a, b) = (at(step), at(step + 1));
+        // Near a step, a rounded time may fall into the neighbouring segment.
+        let neighbours = [step.checked_sub(1), Some(step + 2).filter(|&s| s <= segments)];
+        let sway = neighbours.into_iter().flatten().map(&at);
+        let speed = sway.fold((b - a).abs(), |most, c| most.max((c - a).abs()).max((c - b).abs()));
+        let margin = MOTION * a.abs().max(b.abs()) + 4.0 * U * segments as f64 * speed;
+        (a * (1.0 - fraction) + b * fraction, margin)
+    })
+}
+
+/// What the judge finds about one primitive.
+struct Found {
+    t: [f64; 2],
+    certain: bool,
+}
+
+impl Found {
+    /// What is left of it in (tnear, tfar]: `None` if nothing can be.
+    fn within(self, ray: &Ray) -> Option<Self> {
+        let (near, far) = (f64::from(ray.tnear), f64::from(ray.tfar));
+        let [low, high] = self.t;
+        if high < near || low > far {
+            return None;
+        }
+        Some(Self {
+            t: [low.max(near), high.min(far)],
+            certain: self.certain && low > near && high <= far,
+        })
+    }
+}
+
+/// A ray's line in the space of a group, with how far each coordinate of origin and direction may be off.
+struct Line {
+    origin: DVec3,
+    direction: DVec3,
+    origin_margin: DVec3,
+    direction_margin: DVec3,
+}
+
+impl Line {
+    fn in_world(ray: &Ray) -> Self {
+        Self {
+            origin: ray.origin.as_dvec3(),
+            direction: ray.direction.as_dvec3(),
+            origin_margin: DVec3::ZERO,
+            direction_margin: DVec3::ZERO,
+        }
+    }
+
+    fn in_instance(ray: &Ray, object_from_world: &DAffine3, margin: f64) -> Self {
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let size = object_from_world.matrix3.abs();
+        let placed = object_from_world.matrix3.inverse() * -object_from_world.translation;
+        Self {
+            origin: object_from_world.transform_point3(origin),
+            direction: object_from_world.transform_vector3(direction),
+            origin_margin: margin * (size * (origin.abs() + placed.abs())),
+            direction_margin: margin * (size * direction.abs()),
+        }
+    }
+
+    /// With corners c_i = (x, y, z) relative to the origin and sheared onto the line, and their margins m_i across it, an edge
+    /// function c_i x c_j is off by at most m_i |c_j| + m_j |c_i| + 2 m_i m_j, in the 1-norm. Where an edge function is smaller
+    /// than that, the ray may be on either side. The distance is the mean of the z with the edge functions as weights: errors e
+    /// of weights whose sum is A move it by at most sum(e_i |z_i - t|) / (A - sum(e)), and never beyond the corners.
+    fn triangle(&self, corners: &Corners) -> Option<Found> {
+        let size = self.direction.abs();
+        let k = if size.x > size.y && size.x > size.z {
+            0
+        } else if size.y > size.z {
+            1
+        } else {
+            2
+        };
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (sx, sy) = (
+            self.direction[i] / self.direction[k],
+            self.direction[j] / self.direction[k],
+        );
+        let inverse = 1.0 / self.direction[k];
+        let sheared = corners.map(|(corner, margin)| {
+            let c = corner - self.origin;
+            let t = c[k] * inverse;
+            let moved = margin + self.origin_margin + self.direction_margin * t.abs();
+            let across = CORNER * (c[i].abs().max(c[j].abs()) + c[k].abs()) + moved[i].max(moved[j]) + moved[k];
+            let along = (CORNER * c[k].abs() + moved[k]) * inverse.abs() + DISTANCE * t.abs();
+            ([c[i] - sx * c[k], c[j] - sy * c[k]], across, t, along)
+        });
+        let [a, b, c] = sheared;
+        let most = a.1.max(b.1).max(c.1);
+        for axis in 0..2 {
+            let (x, y, z) = (a.0[axis], b.0[axis], c.0[axis]);
+            if x.min(y).min(z) > most || x.max(y).max(z) < -most {
+                return None;
+            }
+        }
+
+        type Sheared = ([f64; 2], f64, f64, f64);
+        let edge = |p: &Sheared, q: &Sheared| p.0[0] * q.0[1] - p.0[1] * q.0[0];
+        let length = |p: &Sheared| p.0[0].abs() + p.0[1].abs();
+        let error = |p: &Sheared, q: &Sheared| p.1 * length(q) + q.1 * length(p) + 2.0 * p.1 * q.1;
+        let edges = [edge(&c, &b), edge(&a, &c), edge(&b, &a)];
+        let errors = [error(&c, &b), error(&a, &c), error(&b, &a)];
+        let is_above = |i: usize| edges[i] > errors[i];
+        let is_below = |i: usize| edges[i] < -errors[i];
+        if (0..3).any(is_above) && (0..3).any(is_below) {
+            return None;
+        }
+        let certain = (0..3).all(is_above) || (0..3).all(is_below);
+
+        let corner_t = [a.2, b.2, c.2];
+        let least = (a.2 - a.3).min(b.2 - b.3).min(c.2 - c.3);
+        let greatest = (a.2 + a.3).max(b.2 + b.3).max(c.2 + c.3);
+        let area = edges[0] + edges[1] + edges[2];
+        let lost = errors[0] + errors[1] + errors[2];
+        let mut t = [least, greatest];
+        if area.abs() > lost {
+            let middle = (edges[0] * a.2 + edges[1] * b.2 + edges[2] * c.2) / area;
+            let moved: f64 = (0..3).map(|i| errors[i] * (corner_t[i] - middle).abs()).sum();
+            let off = moved / (area.abs() - lost) + a.3.max(b.3).max(c.3);
+            t = [least.max(middle - off), greatest.min(middle + off)];
+        }
+        Some(Found { t, certain })
+    }
+
+    /// The distance of the centre from the line decides whether the line meets the sphere: with it off by the margin both ways,
+    /// there are two pairs of roots, between which the true ones are.
+    fn sphere(&self, sphere: &Sphere, ray: &Ray) -> Option<Found> {
+        let m = sphere.object_from_world();
+        let (o, d) = (m.transform_point3(self.origin), m.transform_vector3(self.direction));
+        let a = d.length_squared();
+        let closest = -o.dot(d) / a;
+        let distance = (o + d * closest).length();
+        let reach = closest.abs() + sphere.radius() / a.sqrt();
+        let moved = m.matrix3.abs() * (self.origin_margin + self.direction_margin * reach);
+        let margin = moved.length() + SPHERE * (o.length() + sphere.radius());
+        let half = |distance: f64| {
+            let r = sphere.radius();
+            (((r - distance) * (r + distance)).max(0.0) / a).sqrt()
+        };
+        if distance - margin > sphere.radius() {
+            return None;
+        }
+        let certain = distance + margin < sphere.radius();
+        let (outer, inner) = (half((distance - margin).max(0.0)), half(distance + margin));
+        let along = moved.length() / a.sqrt() + SPHERE * reach;
+        let root = |near: f64, far: f64| {
+            let (low, high) = (closest + near, closest + far);
+            let off = |t: f64| along + 2.0 * U * t.abs();
+            Found {
+                t: [low - off(low), high + off(high)],
+                certain,
+            }
+        };
+        let enter = root(-outer, -inner).within(ray);
+        let leave = root(inner, outer).within(ray);
+        match (enter, leave) {
+            (Some(first), _) if first.certain => Some(first),
+            (Some(first), Some(second)) => Some(Found {
+                t: [first.t[0], second.t[1]],
+                certain: second.certain,
+            }),
+            (first, second) => first.or(second),
+        }
+    }
+}
