@@ -115,9 +115,9 @@ def flag_text():
             for j in range(columns + 1):
                 x = j / columns
                 height = (i / rows - 0.5) * (1 - 0.93 * x)
-                wave = 0.17 * math.sqrt(x) * math.sin(9.5 * x - phase)
-                drop = -0.12 * x * x
-                numbers.append(f"{1.9 * x:.3f} {height + drop + 0.2 * wave:.3f} {wave:.3f}")
+                wave = 0.2 * math.sqrt(x) * math.sin(7.5 * x - phase)
+                drop = -0.1 * x * x
+                numbers.append(f"{1.9 * x:.3f} {height + drop + 0.8 * wave:.3f} {wave:.3f}")
         return "\n        ".join("  ".join(numbers[k:k + 6]) for k in range(0, len(numbers), 6))
 
     indices = []
@@ -132,7 +132,7 @@ def flag_text():
         'Shape "trianglemesh"\n'
         f'    "integer indices" [\n        {indices}\n    ]\n'
         f'    "point3 P" [\n        {points(0.0)}\n    ]\n'
-        f'    "point3 P1" [\n        {points(0.9)}\n    ]\n'
+        f'    "point3 P1" [\n        {points(1.1)}\n    ]\n'
     )
 
 
