@@ -85,6 +85,17 @@ def backdrop():
     return mesh
 
 
+def board(parity):
+    """Every second square of a board in the plane y = 0; squares of side 1.2."""
+    mesh = Mesh()
+    for i in range(-7, 12):
+        for j in range(-5, 12):
+            if (i + j) % 2 == parity:
+                corners = [(1.2 * x, 0.0, 1.2 * z) for x, z in ((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j))]
+                mesh.add(corners, [(0, 1, 2), (0, 2, 3)])
+    return mesh
+
+
 def vane():
     """One curled sheet of a pinwheel in the plane z = 0, the hub at the origin, radius 1; 45 degrees wide."""
     mesh = Mesh()
@@ -140,6 +151,8 @@ def main():
     PARTS.mkdir(exist_ok=True)
     meshes = {
         "backdrop": backdrop(),
+        "board-dark": board(1),
+        "board-light": board(0),
         "gem": gem(),
         "goblet": goblet(),
         "pawn": pawn(),
