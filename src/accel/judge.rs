@@ -20,7 +20,7 @@
 //!   [`Judge::with_pluecker_margins`].
 //!
 //! A corner's margin carries over to the edge functions, and from them to the distance as a mean of the corners' with their
-//! weights: see [`Line::triangle`].
+//! weights: see `Line::triangle`.
 //!
 //! Spheres are intersected in double precision by the backends too; their margin is that of the ray through an instance, and
 //! 16 roundings of the `f64` operations in units of the distances involved.
@@ -237,6 +237,7 @@ fn corners(mesh: &TriangleMesh, triangle: usize, time: f32) -> Corners {
 }
 
 /// What the judge finds about one primitive.
+#[derive(Clone, Copy)]
 struct Found {
     t: [f64; 2],
     certain: bool,
