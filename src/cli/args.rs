@@ -263,7 +263,8 @@ fn parse_max_depth(text: &str) -> Result<MaxDepth, String> {
 }
 
 fn parse_seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("expected an integer from 0 to {}", u64::MAX))
+    text.parse()
+        .map_err(|_| format!("expected an integer from 0 to {}", u64::MAX))
 }
 
 fn parse_finite(text: &str) -> Result<f32, String> {
