@@ -9,6 +9,7 @@ pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
 pub mod judge;
+pub mod record;
 
 use std::fmt;
 use std::str::FromStr;

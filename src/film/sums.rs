@@ -3,8 +3,8 @@
 
 use std::sync::Mutex;
 
-/// Edge of a tile in pixels. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
-pub const TILE_SIZE: u32 = 64;
+/// Edge of a tile in pixels: the paths of one at one sample index fit a second level cache. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
+pub const TILE_SIZE: u32 = 32;
 
 /// A rectangle of pixels: origin top left, `x1` and `y1` exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,18 +241,18 @@ mod tests {
     #[test]
     fn tiles_lie_on_the_grid_of_the_whole_picture() {
         let rects: Vec<_> = film().tiles().iter().map(|tile| lock(tile).rect()).collect();
-        assert_eq!(rects.len(), 4);
+        assert_eq!(rects.len(), 6);
         assert_eq!(
             rects[0],
             PixelRect {
                 x0: 60,
                 y0: 10,
                 x1: 64,
-                y1: 64
+                y1: 32
             }
         );
         assert_eq!(
-            rects[3],
+            rects[5],
             PixelRect {
                 x0: 64,
                 y0: 64,
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn pixels_are_weighted_means_and_dropped_samples_count_as_black() {
         let film = film();
-        let mut tile = lock(&film.tiles()[3]);
+        let mut tile = lock(&film.tiles()[5]);
         assert!(tile.add(89, 65, Some([1.0, 2.0, 3.0]), 1.0));
         assert!(tile.add(89, 65, Some([5.0, 0.0, 0.0]), -0.5));
         assert!(!tile.add(89, 65, Some([f32::NAN, 0.0, 0.0]), 0.5));

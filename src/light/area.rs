@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use super::{LightDensity, LightEnd, LightSample};
-use crate::geometry::triangle_error;
+use crate::geometry::{LEAST_ERROR, triangle_error};
 use crate::math::{DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
@@ -139,7 +139,8 @@ impl AreaLight {
         }
     }
 
-    /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside.
+    /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside or from the
+    /// sphere itself.
     fn sample_sphere(&self, center: DVec3, radius: f64, inward: bool, from: Vec3, u: Vec2) -> SurfaceSample {
         let cone = Cone::towards(from, center, radius);
         let outward = match &cone {
@@ -154,7 +155,7 @@ impl AreaLight {
         };
         SurfaceSample {
             p,
-            error: ng.abs().dot(p.abs()) * gamma(1),
+            error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
             ng,
             pdf,
         }
@@ -171,7 +172,7 @@ impl EmitterShape {
         match self {
             Self::Triangle { vertices, ng } => {
                 let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(6) * ng.abs().dot(largest)
+                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
             }
             Self::Sphere { .. } => 0.0,
         }
@@ -198,11 +199,13 @@ struct Cone {
 }
 
 impl Cone {
-    /// `None` from inside the sphere.
+    /// `None` from inside the sphere, and from so near to it that `from`, rounded to single precision, may stand for a point
+    /// inside: on the sphere itself half of all points seem to be outside.
     fn towards(from: Vec3, center: DVec3, radius: f64) -> Option<Self> {
         let to_center = center - from.as_dvec3();
         let distance = to_center.length();
-        if distance <= radius {
+        let rounding = f64::from(gamma(1) * (from.x.abs() + from.y.abs() + from.z.abs()));
+        if distance <= radius + rounding {
             return None;
         }
         let sin = radius / distance;

@@ -191,7 +191,7 @@ struct Hashed;
 
 impl HitFilter for Hashed {
     fn accept(&self, hit: &FilterHit) -> bool {
-        hash(u64::from(hit.ray_id) << 32 | u64::from(hit.primitive.0)) % 3 == 0
+        hash(u64::from(hit.ray_id) << 32 | u64::from(hit.primitive.0)).is_multiple_of(3)
     }
 }
 

@@ -8,8 +8,10 @@
 
 pub mod chi2;
 pub mod means;
+pub mod microfacet;
 pub mod random;
 pub mod reference;
+pub mod render;
 
 /// The level of each of `tests` independent tests that together have the level `significance` (Sidak 1967).
 pub fn sidak(significance: f64, tests: usize) -> f64 {

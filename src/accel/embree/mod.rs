@@ -22,6 +22,12 @@
 //! | `occluded1` | 9.2 | 3.4 |
 //!
 //! Embree 4 has no streams; shadow rays take `occluded8` there.
+//!
+//! # Limits
+//!
+//! Debian 12's library checks its assertions: a ray that takes part and is not valid, or has a coordinate of origin or direction
+//! beyond 1.844e18 (where products of three overflow), ends the process. Triangles beyond that are left out by Embree, and those
+//! whose edges are so short that products of three underflow (some 1e-13) are not met.
 
 #![allow(
     unsafe_code,
@@ -72,6 +78,11 @@ impl EmbreeScene {
             world: Arc::clone(world),
             device,
         })
+    }
+
+    /// The committed scene, for benchmarks that call Embree directly. It lives as long as `self`.
+    pub fn raw_scene(&self) -> ffi::RTCScene {
+        self.scenes.root.raw()
     }
 
     fn query<'a>(&'a self, kind: RayKind, filter: Option<&'a dyn HitFilter>) -> Query<'a> {

@@ -1,0 +1,227 @@
+//! Ray queries on the rays that a renderer really shoots: streams recorded from renders of scenes/, replayed on one thread
+//!
+//! - `embree-raw`: through C calls on ready packets, robust, by the entry point that suits the kind;
+//! - `embree`: through the layer, on the packets of a wave;
+//! - `embree-packed`: the same, from single rays, packing included;
+//! - `bvh`: through our own BVH.
+//!
+//! `cargo bench --bench accel`; `cargo bench --bench accel -- cornell` for one scene.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use lucerna::accel::record::{RayStreams, Recorder};
+use lucerna::accel::{Accel, Backend, BuildOptions, RayKind};
+use lucerna::desc::{self, ParseOptions};
+use lucerna::geometry::{HitPacket, LANES, Ray, RayPacket};
+use lucerna::integrator::{Integrator, Silent};
+use lucerna::scene::{Scene, SceneOptions, View, ViewOverrides};
+
+const SCENES: [&str; 4] = ["cornell-box", "smallpt", "glass-and-mirror", "instances"];
+
+/// Packets of each kind: 2^18 rays, more than caches hold.
+const PACKETS: usize = 1 << 15;
+
+/// A scene in one backend.
+fn load(name: &str, backend: Backend) -> (Scene, View, Integrator) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name)
+        .with_extension("pbrt");
+    let desc = desc::load(&path, &ParseOptions::default()).expect("the project's own scene");
+    let options = SceneOptions {
+        backend,
+        build: BuildOptions::default(),
+        ..SceneOptions::default()
+    };
+    let scene = Scene::build(&desc, &options).expect("a scene that renders");
+    let overrides = ViewOverrides {
+        resolution: Some([512, 512]),
+        spp: Some(1),
+        ..ViewOverrides::default()
+    };
+    let view = View::build(&desc, &desc.views[0], scene.color(), &overrides).expect("a view of the scene");
+    (scene, view, Integrator::from_desc(&desc.integrator))
+}
+
+/// The streams of one render, recorded through the default backend.
+fn record(name: &str) -> std::sync::Arc<RayStreams> {
+    let (scene, view, integrator) = load(name, Backend::default());
+    let streams = RayStreams::new(PACKETS);
+    let scene = scene.map_accel(|inner| Box::new(Recorder::new(inner, streams.clone())));
+    integrator.render(&scene, &view, &view.film(), &Silent);
+    streams
+}
+
+/// Traces a stream through the layer.
+fn trace(accel: &dyn Accel, kind: RayKind, rays: &mut [RayPacket], hits: &mut [HitPacket]) {
+    match kind {
+        RayKind::Shadow => accel.occluded(kind, rays, None),
+        RayKind::Camera | RayKind::Bounce => accel.intersect(kind, rays, hits, None),
+    }
+    black_box((rays, hits));
+}
+
+fn benches(c: &mut Criterion) {
+    for name in SCENES {
+        let streams = record(name);
+        let built: Vec<_> = Backend::AVAILABLE
+            .iter()
+            .map(|&backend| (backend, load(name, backend).0))
+            .collect();
+        for kind in RayKind::ALL {
+            let packets = streams.of(kind);
+            let rays: Vec<Ray> = packets
+                .iter()
+                .flat_map(|packet| {
+                    (0..LANES)
+                        .filter(|&lane| packet.is_active(lane))
+                        .map(|lane| packet.get(lane))
+                })
+                .collect();
+            let mut group = c.benchmark_group(format!("{name}/{kind:?}").to_lowercase());
+            group
+                .sample_size(10)
+                .throughput(Throughput::Elements(rays.len() as u64));
+            let mut hits = vec![HitPacket::EMPTY; packets.len()];
+            for (backend, scene) in &built {
+                group.bench_function(BenchmarkId::from_parameter(backend), |b| {
+                    b.iter_batched_ref(
+                        || packets.clone(),
+                        |packets| trace(scene.accel(), kind, packets, &mut hits),
+                        BatchSize::LargeInput,
+                    );
+                });
+                group.bench_function(BenchmarkId::from_parameter(format!("{backend}-packed")), |b| {
+                    let mut packed = Vec::with_capacity(packets.len());
+                    b.iter(|| {
+                        RayPacket::pack(rays.iter().copied(), &mut packed);
+                        trace(
+                            scene.accel(),
+                            kind,
+                            &mut packed,
+                            &mut hits[..rays.len().div_ceil(LANES)],
+                        );
+                    });
+                });
+            }
+            #[cfg(feature = "embree")]
+            raw::bench(&mut group, built[0].1.world(), kind, &packets);
+            group.finish();
+        }
+    }
+}
+
+/// C calls on ready packets.
+#[cfg(feature = "embree")]
+mod raw {
+    use std::mem::MaybeUninit;
+    use std::ptr::{from_ref, null_mut};
+    use std::sync::Arc;
+
+    use criterion::measurement::WallTime;
+    use criterion::{BatchSize, BenchmarkGroup};
+    use embree_sys as ffi;
+    use lucerna::accel::embree::EmbreeScene;
+    use lucerna::accel::{BuildOptions, RayKind};
+    use lucerna::geometry::{LANES, RayPacket, World};
+
+    #[derive(Clone, Copy)]
+    #[repr(C, align(32))]
+    struct Valid([i32; LANES]);
+
+    /// What the call of a kind takes.
+    enum Ready {
+        Packets(Vec<(Valid, ffi::RTCRayHit8)>),
+        Shadows(Vec<(Valid, ffi::RTCRay8)>),
+        Stream(Vec<ffi::RTCRay>),
+    }
+
+    pub fn bench(group: &mut BenchmarkGroup<WallTime>, world: &Arc<World>, kind: RayKind, packets: &[RayPacket]) {
+        let scene = EmbreeScene::build(world, &BuildOptions::default()).expect("it was built before");
+        group.bench_function("embree-raw", |b| {
+            b.iter_batched_ref(
+                || ready(kind, packets),
+                |ready| trace(&scene, kind, ready),
+                BatchSize::LargeInput,
+            );
+        });
+    }
+
+    fn ready(kind: RayKind, packets: &[RayPacket]) -> Ready {
+        let valid = |packet: &RayPacket| Valid(std::array::from_fn(|lane| -i32::from(packet.is_active(lane))));
+        // SAFETY: a RayPacket has the layout of an RTCRay8, which the library asserts.
+        let raw = |packet: &RayPacket| unsafe { *from_ref(packet).cast::<ffi::RTCRay8>() };
+        match kind {
+            RayKind::Shadow if ffi::EMBREE_HAS_STREAMS == 1 => Ready::Stream(
+                packets
+                    .iter()
+                    .flat_map(|packet| {
+                        (0..LANES)
+                            .filter(|&lane| packet.is_active(lane))
+                            .map(|lane| ffi::RTCRay {
+                                org_x: packet.org_x[lane],
+                                org_y: packet.org_y[lane],
+                                org_z: packet.org_z[lane],
+                                tnear: packet.tnear[lane],
+                                dir_x: packet.dir_x[lane],
+                                dir_y: packet.dir_y[lane],
+                                dir_z: packet.dir_z[lane],
+                                time: packet.time[lane],
+                                tfar: packet.tfar[lane],
+                                mask: packet.mask[lane],
+                                id: packet.id[lane],
+                                flags: 0,
+                            })
+                    })
+                    .collect(),
+            ),
+            RayKind::Shadow => Ready::Shadows(packets.iter().map(|packet| (valid(packet), raw(packet))).collect()),
+            RayKind::Camera | RayKind::Bounce => Ready::Packets(
+                packets
+                    .iter()
+                    .map(|packet| {
+                        // SAFETY: numbers only, for which zero is a value.
+                        let mut ready: ffi::RTCRayHit8 = unsafe { MaybeUninit::zeroed().assume_init() };
+                        ready.ray = raw(packet);
+                        ready.hit.geomID = [ffi::EMBREE_INVALID_ID; LANES];
+                        ready.hit.instID[0] = [ffi::EMBREE_INVALID_ID; LANES];
+                        (valid(packet), ready)
+                    })
+                    .collect(),
+            ),
+        }
+    }
+
+    fn trace(scene: &EmbreeScene, kind: RayKind, ready: &mut Ready) {
+        let mut query = MaybeUninit::uninit();
+        // SAFETY: it fills the query. Scenes of this bench have no filter, so no callback asks for a user pointer.
+        unsafe { ffi::embree_query_init(query.as_mut_ptr(), kind == RayKind::Camera, None, null_mut()) };
+        let (query, scene) = (query.as_mut_ptr(), scene.raw_scene());
+        match ready {
+            Ready::Packets(packets) => {
+                for (valid, packet) in packets {
+                    // SAFETY: the scene is committed; mask, packet and query are live and aligned.
+                    unsafe { ffi::embree_intersect8(valid.0.as_ptr(), scene, query, packet) };
+                }
+            }
+            Ready::Shadows(packets) => {
+                for (valid, packet) in packets {
+                    // SAFETY: as above.
+                    unsafe { ffi::embree_occluded8(valid.0.as_ptr(), scene, query, packet) };
+                }
+            }
+            Ready::Stream(rays) => {
+                for rays in rays.chunks_mut(256) {
+                    let count = rays.len() as u32;
+                    // SAFETY: as above; there are `count` rays.
+                    unsafe { ffi::embree_occluded1_stream(scene, query, rays.as_mut_ptr(), count) };
+                }
+            }
+        }
+    }
+}
+
+criterion_group!(accel, benches);
+criterion_main!(accel);
