@@ -26,6 +26,8 @@ impl Avx2 {
     }
 }
 
+const CACHE_LINE: usize = 64;
+
 #[repr(align(32))]
 struct Aligned<T>(T);
 
@@ -40,6 +42,15 @@ impl Kernel for Avx2 {
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
         // SAFETY: `self` proves that the processor has AVX2.
         unsafe { triangles(corners, ids, mask, shear, range) }
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, items: &[T], index: usize) {
+        let item = items.as_ptr().wrapping_add(index).cast::<i8>();
+        for line in 0..size_of::<T>().div_ceil(CACHE_LINE) {
+            // SAFETY: a hint, which reads nothing: any address is allowed.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(item.wrapping_add(line * CACHE_LINE)) };
+        }
     }
 
     #[inline(always)]

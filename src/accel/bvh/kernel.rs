@@ -34,6 +34,9 @@ pub trait Kernel: Copy + Send + Sync {
     /// Which of four triangles whose mask shares a bit with `mask` a ray meets in `range`: (tnear, tfar].
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits;
 
+    /// Fetches a node or a block into the cache, if the processor will; `index` may be any number.
+    fn prefetch<T>(self, items: &[T], index: usize);
+
     /// [`traverse::group`] compiled for this kernel.
     fn group<const ANY: bool>(
         self,
@@ -96,6 +99,9 @@ impl Kernel for Portable {
         }
         hits
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _items: &[T], _index: usize) {}
 
     fn group<const ANY: bool>(
         self,

@@ -83,7 +83,9 @@ impl<K: Kernel> Walk<'_, K> {
                     let planes = node.planes(fraction, &mut planes);
                     let hits = self.kernel.boxes(planes, &self.ray.slab, query.tnear, query.cull);
                     if hits.mask != 0 {
-                        current = push::<ANY>(&hits, node.children(), stack, &mut depth);
+                        let children = node.children();
+                        self.prefetch(tree, hits.mask, children);
+                        current = push::<ANY>(&hits, children, stack, &mut depth);
                         continue;
                     }
                     false
@@ -114,6 +116,20 @@ impl<K: Kernel> Walk<'_, K> {
                     break;
                 }
             }
+        }
+    }
+
+    /// Fetches the children that are hit, while the order of them is found out.
+    #[inline(always)]
+    fn prefetch<N: Node, B: Block>(&self, tree: &Tree<N, B>, mask: u32, children: &[ChildRef; WIDTH]) {
+        let mut rest = mask;
+        while rest != 0 {
+            match children[rest.trailing_zeros() as usize % WIDTH].get() {
+                Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
+                Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
+                Child::Sphere(_) | Child::Instance(_) => {}
+            }
+            rest &= rest - 1;
         }
     }
 
