@@ -10,15 +10,17 @@
 //! With u = 2^-24, the unit roundoff of `f32`:
 //!
 //! - A corner, relative to the ray's origin, is moved across the ray by at most 4u (|x| + |z|) in the watertight test of Woop,
-//!   Benthin and Wald (2013), x and z being its coordinates there. Tests by Plücker coordinates (Embree's robust mode) take cross
-//!   products of sums and differences of corners, with errors of the same form and a factor of about 10. The judge takes 16.
+//!   Benthin and Wald (2013), x and z being its coordinates there. The judge takes 16.
 //! - A moving corner is off by 3u of its coordinates, and by the rounding of time to a fraction of a segment.
 //! - Through an instance, origin and direction of the ray are off by the rounding of its transform: 16u of the sums of absolute
-//!   values of what is added there if it does not move, 64u if it does, as a backend may interpolate and invert it in single
-//!   precision.
+//!   values of what is added there if it does not move, 64u if it does, times 1 + the condition of its matrix, as a backend may
+//!   interpolate and invert it in single precision.
+//!
+//! - Tests by Plücker coordinates, with distances to the triangle's plane in single precision, need more: see
+//!   [`Judge::with_pluecker_margins`].
 //!
 //! A corner's margin carries over to the edge functions, and from them to the distance as a mean of the corners' with their
-//! weights: see [`Line::triangle`].
+//! weights: see `Line::triangle`.
 //!
 //! Spheres are intersected in double precision by the backends too; their margin is that of the ray through an instance, and
 //! 16 roundings of the `f64` operations in units of the distances involved.
@@ -26,7 +28,7 @@
 use std::sync::Arc;
 
 use crate::geometry::{Geometry, GeometryId, Hit, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
-use crate::math::{DAffine3, DMat3, DVec3};
+use crate::math::{AnimatedTransform, DMat3, DVec3};
 
 /// Unit roundoff of `f32`.
 const U: f64 = f32::EPSILON as f64 / 2.0;
@@ -102,6 +104,7 @@ impl Verdict {
 /// Judges rays through a world.
 pub struct Judge {
     world: Arc<World>,
+    pluecker: bool,
 }
 
 impl Judge {
@@ -109,7 +112,21 @@ impl Judge {
     pub fn new(world: &Arc<World>) -> Self {
         Self {
             world: Arc::clone(world),
+            pluecker: false,
         }
+    }
+
+    /// With margins for backends that test by Plücker coordinates in single precision, as Embree's robust mode does.
+    ///
+    /// An edge function is there the product of the direction with (p - q) x (p + q), of corners p and q relative to the ray's
+    /// origin: it is off by some 16u |p - q| |p + q|, however close to the ray they are. A distance is N . a / N . d, N being
+    /// the cross product of two edges and a a corner. With the extent E of the triangle and the distance R of its farthest corner,
+    /// N is off by some 16u E (E + R), which moves the plane by as much times E where the ray meets it, and N . a is off by
+    /// 16u |N| R. Of a sliver, and of a triangle that is grazed, such a distance says nothing.
+    #[must_use]
+    pub fn with_pluecker_margins(mut self) -> Self {
+        self.pluecker = true;
+        self
     }
 
     /// The verdict about a [valid](Ray::is_valid) ray. Hits on filtered geometry count where `accept` says so.
@@ -124,10 +141,7 @@ impl Judge {
                 if instance.mask & ray.mask == 0 {
                     continue;
                 }
-                let line = Line::in_instance(ray, &instance.world_from_object.inverse_at(ray.time), {
-                    let margin = INSTANCE[usize::from(!instance.world_from_object.is_static())];
-                    margin * (1.0 + condition(&instance.world_from_object.at(ray.time).matrix3))
-                });
+                let line = Line::in_instance(ray, &instance.world_from_object);
                 for &id in &self.world.groups()[instance.group.index()] {
                     let instance = Some(InstanceId::from_index(index));
                     self.geometry(id, instance, &line, ray, &mut candidates);
@@ -159,7 +173,11 @@ impl Judge {
         match &geometry.shape {
             Shape::Mesh(mesh) => {
                 for triangle in 0..mesh.triangle_count() {
-                    let found = line.triangle(&corners(mesh, triangle, ray.time));
+                    let corners = corners(mesh, triangle, ray.time);
+                    let mut found = line.triangle(&corners, self.pluecker);
+                    if self.pluecker {
+                        found = found.map(|found| line.rounded_plane(&corners, found));
+                    }
                     add(triangle, found.and_then(|found| found.within(ray)));
                 }
             }
@@ -219,6 +237,7 @@ fn corners(mesh: &TriangleMesh, triangle: usize, time: f32) -> Corners {
 }
 
 /// What the judge finds about one primitive.
+#[derive(Clone, Copy)]
 struct Found {
     t: [f64; 2],
     certain: bool,
@@ -239,6 +258,44 @@ impl Found {
     }
 }
 
+/// A corner in the sheared space of a line.
+struct Sheared {
+    x: f64,
+    y: f64,
+    /// How far x and y may be off.
+    across: f64,
+    /// Distance along the line.
+    t: f64,
+    /// How far it may be off.
+    along: f64,
+}
+
+impl Sheared {
+    fn edge(&self, other: &Self) -> f64 {
+        self.x * other.y - self.y * other.x
+    }
+
+    fn edge_error(&self, other: &Self) -> f64 {
+        let length = |p: &Self| p.x.abs() + p.y.abs();
+        self.across * length(other) + other.across * length(self) + 2.0 * self.across * other.across
+    }
+}
+
+/// The least and greatest distance at which a triangle may be met whose edge functions are off by `errors`.
+fn distances(corners: &[Sheared; 3], edges: &[f64; 3], errors: &[f64; 3]) -> [f64; 2] {
+    let least = corners.iter().map(|c| c.t - c.along).fold(f64::INFINITY, f64::min);
+    let greatest = corners.iter().map(|c| c.t + c.along).fold(f64::NEG_INFINITY, f64::max);
+    let (area, lost) = (edges.iter().sum::<f64>(), errors.iter().sum::<f64>());
+    if area.abs() <= lost {
+        return [least, greatest];
+    }
+    let weighted = |of: &dyn Fn(usize) -> f64| (0..3).map(of).sum::<f64>();
+    let middle = weighted(&|i| edges[i] * corners[i].t) / area;
+    let moved = weighted(&|i| errors[i] * (corners[i].t - middle).abs());
+    let off = moved / (area.abs() - lost) + corners.iter().map(|c| c.along).fold(0.0, f64::max);
+    [least.max(middle - off), greatest.min(middle + off)]
+}
+
 /// A ray's line in the space of a group, with how far each coordinate of origin and direction may be off.
 struct Line {
     origin: DVec3,
@@ -257,23 +314,55 @@ impl Line {
         }
     }
 
-    fn in_instance(ray: &Ray, object_from_world: &DAffine3, margin: f64) -> Self {
+    fn in_instance(ray: &Ray, world_from_object: &AnimatedTransform) -> Self {
+        let object_from_world = world_from_object.inverse_at(ray.time);
+        let placed = world_from_object.at(ray.time);
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let margin = INSTANCE[usize::from(!world_from_object.is_static())] * (1.0 + condition(&placed.matrix3));
         let size = object_from_world.matrix3.abs();
-        let placed = object_from_world.matrix3.inverse() * -object_from_world.translation;
         Self {
             origin: object_from_world.transform_point3(origin),
             direction: object_from_world.transform_vector3(direction),
-            origin_margin: margin * (size * (origin.abs() + placed.abs())),
+            origin_margin: margin * (size * (origin.abs() + placed.translation.abs())),
             direction_margin: margin * (size * direction.abs()),
         }
     }
 
+    /// Whether and where the line meets a triangle.
+    ///
     /// With corners c_i = (x, y, z) relative to the origin and sheared onto the line, and their margins m_i across it, an edge
     /// function c_i x c_j is off by at most m_i |c_j| + m_j |c_i| + 2 m_i m_j, in the 1-norm. Where an edge function is smaller
     /// than that, the ray may be on either side. The distance is the mean of the z with the edge functions as weights: errors e
     /// of weights whose sum is A move it by at most sum(e_i |z_i - t|) / (A - sum(e)), and never beyond the corners.
-    fn triangle(&self, corners: &Corners) -> Option<Found> {
+    fn triangle(&self, corners: &Corners, pluecker: bool) -> Option<Found> {
+        let sheared = self.sheared(corners);
+        let [a, b, c] = &sheared;
+        let most = a.across.max(b.across).max(c.across);
+        let is_beside = |x: f64, y: f64, z: f64| x.min(y).min(z) > most || x.max(y).max(z) < -most;
+        if !pluecker && (is_beside(a.x, b.x, c.x) || is_beside(a.y, b.y, c.y)) {
+            return None;
+        }
+        let edges = [c.edge(b), a.edge(c), b.edge(a)];
+        let mut errors = [c.edge_error(b), a.edge_error(c), b.edge_error(a)];
+        if pluecker {
+            for (i, error) in errors.iter_mut().enumerate() {
+                let (p, q) = (corners[(i + 1) % 3].0, corners[(i + 2) % 3].0);
+                let sum = p + q - 2.0 * self.origin;
+                *error += 3.0_f64.sqrt() * CORNER * (p - q).length() * sum.length();
+            }
+        }
+        let is_above = |i: usize| edges[i] > errors[i];
+        let is_below = |i: usize| edges[i] < -errors[i];
+        if (0..3).any(is_above) && (0..3).any(is_below) {
+            return None;
+        }
+        Some(Found {
+            t: distances(&sheared, &edges, &errors),
+            certain: (0..3).all(is_above) || (0..3).all(is_below),
+        })
+    }
+
+    fn sheared(&self, corners: &Corners) -> [Sheared; 3] {
         let size = self.direction.abs();
         let k = if size.x > size.y && size.x > size.z {
             0
@@ -283,54 +372,40 @@ impl Line {
             2
         };
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let (sx, sy) = (
-            self.direction[i] / self.direction[k],
-            self.direction[j] / self.direction[k],
-        );
         let inverse = 1.0 / self.direction[k];
-        let sheared = corners.map(|(corner, margin)| {
+        let (sx, sy) = (self.direction[i] * inverse, self.direction[j] * inverse);
+        corners.map(|(corner, margin)| {
             let c = corner - self.origin;
             let t = c[k] * inverse;
             let moved = margin + self.origin_margin + self.direction_margin * t.abs();
-            let across = CORNER * (c[i].abs().max(c[j].abs()) + c[k].abs()) + moved[i].max(moved[j]) + moved[k];
-            let along = (CORNER * c[k].abs() + moved[k]) * inverse.abs() + DISTANCE * t.abs();
-            ([c[i] - sx * c[k], c[j] - sy * c[k]], across, t, along)
-        });
-        let [a, b, c] = sheared;
-        let most = a.1.max(b.1).max(c.1);
-        for axis in 0..2 {
-            let (x, y, z) = (a.0[axis], b.0[axis], c.0[axis]);
-            if x.min(y).min(z) > most || x.max(y).max(z) < -most {
-                return None;
+            Sheared {
+                x: c[i] - sx * c[k],
+                y: c[j] - sy * c[k],
+                across: CORNER * (c[i].abs().max(c[j].abs()) + c[k].abs()) + moved[i].max(moved[j]) + moved[k],
+                t,
+                along: (CORNER * c[k].abs() + moved[k]) * inverse.abs() + DISTANCE * t.abs(),
             }
-        }
+        })
+    }
 
-        type Sheared = ([f64; 2], f64, f64, f64);
-        let edge = |p: &Sheared, q: &Sheared| p.0[0] * q.0[1] - p.0[1] * q.0[0];
-        let length = |p: &Sheared| p.0[0].abs() + p.0[1].abs();
-        let error = |p: &Sheared, q: &Sheared| p.1 * length(q) + q.1 * length(p) + 2.0 * p.1 * q.1;
-        let edges = [edge(&c, &b), edge(&a, &c), edge(&b, &a)];
-        let errors = [error(&c, &b), error(&a, &c), error(&b, &a)];
-        let is_above = |i: usize| edges[i] > errors[i];
-        let is_below = |i: usize| edges[i] < -errors[i];
-        if (0..3).any(is_above) && (0..3).any(is_below) {
-            return None;
+    /// Widens the distances of a triangle by the margin of [`Judge::with_pluecker_margins`].
+    fn rounded_plane(&self, corners: &Corners, found: Found) -> Found {
+        let [a, b, c] = corners.map(|(corner, _)| corner - self.origin);
+        let normal = (b - a).cross(c - a);
+        let extent = (b - a).length().max((c - a).length());
+        let reach = a.length().max(b.length()).max(c.length());
+        let tilt = CORNER * extent * (extent + reach);
+        let slope = normal.dot(self.direction).abs() - tilt * self.direction.length();
+        let off = (tilt * extent + CORNER * normal.length() * reach) / slope;
+        let [low, high] = found.t;
+        Found {
+            t: if slope > 0.0 {
+                [low - off, high + off]
+            } else {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            },
+            ..found
         }
-        let certain = (0..3).all(is_above) || (0..3).all(is_below);
-
-        let corner_t = [a.2, b.2, c.2];
-        let least = (a.2 - a.3).min(b.2 - b.3).min(c.2 - c.3);
-        let greatest = (a.2 + a.3).max(b.2 + b.3).max(c.2 + c.3);
-        let area = edges[0] + edges[1] + edges[2];
-        let lost = errors[0] + errors[1] + errors[2];
-        let mut t = [least, greatest];
-        if area.abs() > lost {
-            let middle = (edges[0] * a.2 + edges[1] * b.2 + edges[2] * c.2) / area;
-            let moved: f64 = (0..3).map(|i| errors[i] * (corner_t[i] - middle).abs()).sum();
-            let off = moved / (area.abs() - lost) + a.3.max(b.3).max(c.3);
-            t = [least.max(middle - off), greatest.min(middle + off)];
-        }
-        Some(Found { t, certain })
     }
 
     /// The distance of the centre from the line decides whether the line meets the sphere: with it off by the margin both ways,

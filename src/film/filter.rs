@@ -1,56 +1,27 @@
 //! Pixel filters, sampled in proportion to their value, so that a camera sample belongs to one pixel.
 
+use crate::desc::FilterKind;
 use crate::math::Vec2;
 use crate::sampling::{PiecewiseConstant1D, warp};
 
-/// One factor of a separable filter, as a function of the distance x from the pixel's centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FilterKind {
-    /// Constant.
-    Box,
-    /// A tent.
-    Triangle,
-    /// A Gaussian less its value at the radius.
-    Gaussian {
-        /// Standard deviation in pixels.
-        sigma: f64,
-    },
-    /// The cubic of Mitchell and Netravali (1988), stretched to the radius.
-    Mitchell {
-        /// Blur.
-        b: f64,
-        /// Ringing.
-        c: f64,
-    },
-    /// sinc(x) sinc(x / tau), stretched as in pbrt: the window ends at the radius.
-    LanczosSinc {
-        /// Cycles within the radius.
-        tau: f64,
-    },
-    /// The four-term Blackman-Harris window.
-    BlackmanHarris,
-}
-
-impl FilterKind {
-    /// Its value at `x`, for a support of `radius`; 0 outside.
-    pub fn evaluate(&self, x: f64, radius: f64) -> f64 {
-        let x = x.abs();
-        if x > radius {
-            return 0.0;
+/// The value of a filter of support `radius` at the distance `x` from the pixel's centre; 0 outside.
+pub fn evaluate(kind: FilterKind, x: f64, radius: f64) -> f64 {
+    let x = x.abs();
+    if x > radius {
+        return 0.0;
+    }
+    match kind {
+        FilterKind::Box => 1.0,
+        FilterKind::Triangle => radius - x,
+        FilterKind::Gaussian { sigma } => {
+            let gaussian = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();
+            gaussian(x) - gaussian(radius)
         }
-        match *self {
-            Self::Box => 1.0,
-            Self::Triangle => radius - x,
-            Self::Gaussian { sigma } => {
-                let gaussian = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();
-                gaussian(x) - gaussian(radius)
-            }
-            Self::Mitchell { b, c } => mitchell(2.0 * x / radius, b, c),
-            Self::LanczosSinc { tau } => sinc(x) * sinc(x / tau),
-            Self::BlackmanHarris => {
-                let phase = std::f64::consts::PI * (1.0 + x / radius);
-                0.35875 - 0.48829 * phase.cos() + 0.14128 * (2.0 * phase).cos() - 0.01168 * (3.0 * phase).cos()
-            }
+        FilterKind::Mitchell { b, c } => mitchell(2.0 * x / radius, b, c),
+        FilterKind::LanczosSinc { tau } => sinc(x) * sinc(x / tau),
+        FilterKind::BlackmanHarris => {
+            let phase = std::f64::consts::PI * (1.0 + x / radius);
+            0.35875 - 0.48829 * phase.cos() + 0.14128 * (2.0 * phase).cos() - 0.01168 * (3.0 * phase).cos()
         }
     }
 }
@@ -143,7 +114,7 @@ impl FilterAxis {
                     .map(|cell| {
                         let (left, right) = (center(cell) - 0.5 * width, center(cell) + 0.5 * width);
                         [left, center(cell), right]
-                            .map(|x| kind.evaluate(x.clamp(-radius, radius), radius).abs())
+                            .map(|x| evaluate(kind, x.clamp(-radius, radius), radius).abs())
                             .into_iter()
                             .fold(0.0, f64::max) as f32
                     })
@@ -164,7 +135,7 @@ impl FilterAxis {
         match (&self.table, kind) {
             (Some(table), _) => {
                 let (x, pdf, _) = table.sample(u);
-                let value = kind.evaluate(f64::from(x), self.radius) / self.integral;
+                let value = evaluate(kind, f64::from(x), self.radius) / self.integral;
                 (x, (value / f64::from(pdf)) as f32)
             }
             (None, FilterKind::Triangle) => (warp::sample_tent(u, self.radius as f32), 1.0),
@@ -175,7 +146,7 @@ impl FilterAxis {
 
 /// The integral over one cell by Simpson's rule.
 fn simpson(kind: FilterKind, center: f64, width: f64, radius: f64) -> f64 {
-    let at = |x: f64| kind.evaluate(x.clamp(-radius, radius), radius);
+    let at = |x: f64| evaluate(kind, x.clamp(-radius, radius), radius);
     width / 6.0 * (at(center - 0.5 * width) + 4.0 * at(center) + at(center + 0.5 * width))
 }
 
@@ -217,7 +188,7 @@ mod tests {
             let (mut integral, mut moments) = (0.0, [0.0_f64; 2]);
             for i in 0..steps {
                 let x = radius * (2.0 * (f64::from(i) + 0.5) / f64::from(steps) - 1.0);
-                let f = kind.evaluate(x, radius);
+                let f = evaluate(kind, x, radius);
                 integral += f;
                 moments[0] += f * x * x;
                 moments[1] += f * x.powi(4);
@@ -243,9 +214,9 @@ mod tests {
             b: 1.0 / 3.0,
             c: 1.0 / 3.0,
         };
-        assert!((kind.evaluate(1.0 - 1e-9, 2.0) - kind.evaluate(1.0 + 1e-9, 2.0)).abs() < 1e-8);
-        assert!(kind.evaluate(2.0, 2.0).abs() < 1e-12);
-        assert!(kind.evaluate(1.5, 2.0) < 0.0);
+        assert!((evaluate(kind, 1.0 - 1e-9, 2.0) - evaluate(kind, 1.0 + 1e-9, 2.0)).abs() < 1e-8);
+        assert!(evaluate(kind, 2.0, 2.0).abs() < 1e-12);
+        assert!(evaluate(kind, 1.5, 2.0) < 0.0);
     }
 
     #[test]

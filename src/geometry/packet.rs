@@ -158,7 +158,7 @@ impl RayPacket {
 }
 
 /// What eight rays hit: ids only, and the backend's distance. Barycentrics and an exact distance are recomputed from the ray
-/// and the primitive by [`World::hit`](super::World::hit), so that backends and vector widths agree.
+/// and the primitive by [`World::interaction`](super::World::interaction), so that backends and vector widths agree.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct HitPacket {

@@ -113,7 +113,7 @@ fn materials_have_the_parameters_of_pbrt() {
     let kinds: Vec<&MaterialKind> = scene.materials.iter().skip(1).map(|m| &m.kind).collect();
     let reflectance = |i: usize| match kinds[i] {
         MaterialKind::Diffuse { reflectance } => &reflectance.value,
-        other @ ShapeKind::Sphere { .. } => panic!("{other:?}"),
+        other => panic!("{other:?}"),
     };
     let samples = SpectrumValue::Samples(vec![(400.0, 0.1), (500.0, 0.25), (700.0, 0.5)]);
     assert_eq!(*reflectance(0), samples);
@@ -123,7 +123,7 @@ fn materials_have_the_parameters_of_pbrt() {
             interface: ConductorDesc::Ior { eta, k },
             roughness,
         } => (eta.value.clone(), k.value.clone(), *roughness),
-        other @ ShapeKind::Sphere { .. } => panic!("{other:?}"),
+        other => panic!("{other:?}"),
     };
     let named = |name: &str| SpectrumValue::Named(name.to_owned());
     let rough = |u, v, remap| RoughnessDesc { u, v, remap };
@@ -148,7 +148,7 @@ fn materials_have_the_parameters_of_pbrt() {
     );
     let eta = |i: usize| match kinds[i] {
         MaterialKind::Dielectric { eta, roughness } => (eta.value.clone(), roughness.u),
-        other @ ShapeKind::Sphere { .. } => panic!("{other:?}"),
+        other => panic!("{other:?}"),
     };
     assert_eq!(eta(5), (SpectrumValue::Constant(1.33), 0.0));
     assert_eq!(eta(6), (named("glass-BK7"), 0.1));

@@ -1,7 +1,7 @@
-//! Our own BVH, pure Rust: a binned SAH build ([`build`], [`bins`]) collapsed to eight children a node ([`collapse`]), and one
-//! traversal ([`traverse`]) over a kernel of vector instructions that is chosen at run time ([`kernel`], [`avx2`]).
+//! Our own BVH, pure Rust: a binned SAH build (`build`, `bins`) collapsed to eight children a node (`collapse`), and one
+//! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
 //!
-//! It is watertight: [`triangle`] says how two triangles leave no gap at their edge, [`ray`] why no box is passed over whose
+//! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
 //! triangle would be hit. Both kernels give the same bits.
 
 #[cfg(target_arch = "x86_64")]

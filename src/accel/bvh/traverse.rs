@@ -159,7 +159,7 @@ impl<K: Kernel> Walk<'_, K> {
         query.offer_sphere(&spheres[primitive as usize], self.ray, candidate)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn instance<const ANY: bool>(&self, index: usize, query: &mut Query, stack: &mut [u64]) -> bool {
         let id = InstanceId::from_index(index);
         let instance = self.scene.world.instance(id);
@@ -190,32 +190,55 @@ fn push<const ANY: bool>(
 ) -> ChildRef {
     let mut rest = hits.mask;
     let mut take = || {
-        let slot = rest.trailing_zeros() as usize;
+        let slot = rest.trailing_zeros() as usize % WIDTH;
         rest &= rest - 1;
         // Distances are not negative: their bits have the order of their values.
-        (
-            u64::from(hits.entry[slot].to_bits()) << 32 | u64::from(children[slot].0),
-            rest != 0,
-        )
+        let entry = u64::from(hits.entry[slot].to_bits()) << 32 | u64::from(children[slot].0);
+        (entry, rest == 0)
     };
-    let (mut nearest, mut more) = take();
-    let first = *depth;
-    while more {
+    let (a, last) = take();
+    if last {
+        return ChildRef(a as u32);
+    }
+    let (b, last) = take();
+    let (mut nearest, b) = in_order(a, b);
+    // The farthest is the lowest on the stack.
+    stack[*depth] = b;
+    *depth += 1;
+    if last {
+        return ChildRef(nearest as u32);
+    }
+    let (c, mut last) = take();
+    let c = take_nearer(&mut nearest, c);
+    let (b, c) = in_order(b, c);
+    stack[*depth - 1] = c;
+    stack[*depth] = b;
+    *depth += 1;
+    let first = *depth - 2;
+    while !last {
         let entry;
-        (entry, more) = take();
-        if ANY {
-            stack[*depth] = entry;
-        } else {
-            let far = nearest.max(entry);
-            nearest = nearest.min(entry);
-            let mut place = *depth;
-            while place > first && stack[place - 1] < far {
-                stack[place] = stack[place - 1];
-                place -= 1;
-            }
-            stack[place] = far;
+        (entry, last) = take();
+        let far = take_nearer(&mut nearest, entry);
+        let mut place = *depth;
+        while !ANY && place > first && stack[place - 1] < far {
+            stack[place] = stack[place - 1];
+            place -= 1;
         }
+        stack[place] = far;
         *depth += 1;
     }
     ChildRef(nearest as u32)
+}
+
+#[inline(always)]
+fn in_order(a: u64, b: u64) -> (u64, u64) {
+    (a.min(b), a.max(b))
+}
+
+/// Makes `nearest` the nearer of the two and returns the other.
+#[inline(always)]
+fn take_nearer(nearest: &mut u64, entry: u64) -> u64 {
+    let far;
+    (*nearest, far) = in_order(*nearest, entry);
+    far
 }
