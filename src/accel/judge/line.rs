@@ -48,6 +48,7 @@ pub(super) fn corners(mesh: &TriangleMesh, triangle: usize, time: f32) -> Corner
 }
 
 /// What the judge finds about one primitive.
+#[derive(Clone, Copy)]
 pub(super) struct Found {
     /// The least and the greatest distance.
     pub(super) t: [f64; 2],
