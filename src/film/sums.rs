@@ -3,65 +3,10 @@
 
 use std::sync::Mutex;
 
+use crate::desc::PixelRect;
+
 /// Edge of a tile in pixels: the paths of one at one sample index fit a second level cache. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
 pub const TILE_SIZE: u32 = 32;
-
-/// A rectangle of pixels: origin top left, `x1` and `y1` exclusive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PixelRect {
-    /// First column.
-    pub x0: u32,
-    /// First row.
-    pub y0: u32,
-    /// One past the last column.
-    pub x1: u32,
-    /// One past the last row.
-    pub y1: u32,
-}
-
-impl PixelRect {
-    /// All pixels of a picture.
-    pub fn full(resolution: [u32; 2]) -> Self {
-        Self {
-            x0: 0,
-            y0: 0,
-            x1: resolution[0],
-            y1: resolution[1],
-        }
-    }
-
-    /// Columns.
-    pub fn width(&self) -> u32 {
-        self.x1 - self.x0
-    }
-
-    /// Rows.
-    pub fn height(&self) -> u32 {
-        self.y1 - self.y0
-    }
-
-    /// Pixels.
-    pub fn area(&self) -> u64 {
-        u64::from(self.width()) * u64::from(self.height())
-    }
-
-    /// Whether it holds pixel (x, y).
-    #[inline]
-    pub fn contains(&self, x: u32, y: u32) -> bool {
-        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
-    }
-
-    /// The pixels in both; `None` if there are none.
-    pub fn intersection(&self, other: &Self) -> Option<Self> {
-        let rect = Self {
-            x0: self.x0.max(other.x0),
-            y0: self.y0.max(other.y0),
-            x1: self.x1.min(other.x1),
-            y1: self.y1.min(other.y1),
-        };
-        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect)
-    }
-}
 
 /// The sums of one pixel: weighted linear RGB and weights, in units of 2^-64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
