@@ -34,7 +34,13 @@ pub fn fresnel_complex(cos_i: f32, eta: f32, k: f32) -> f32 {
     let perpendicular = (perpendicular_sum - perpendicular_term) / (perpendicular_sum + perpendicular_term);
     let parallel_sum = cos2 * a2_plus_b2 + sin2 * sin2;
     let parallel_term = perpendicular_term * sin2;
-    let parallel = perpendicular * (parallel_sum - parallel_term) / (parallel_sum + parallel_term);
+    let both = parallel_sum + parallel_term;
+    // Only an index of 0 (the fourth lane of rgb mode) seen head on has nothing here.
+    let parallel = if both > 0.0 {
+        perpendicular * (parallel_sum - parallel_term) / both
+    } else {
+        perpendicular
+    };
     0.5 * (perpendicular + parallel)
 }
 
@@ -89,6 +95,13 @@ mod tests {
         let (n, k) = (0.43_f32, 2.46_f32);
         let expected = ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
         assert_relative_eq!(fresnel_complex(1.0, n, k), expected, epsilon = 1e-6);
+    }
+
+    #[test]
+    fn an_index_of_zero_reflects_a_finite_part_at_every_angle() {
+        for i in 0..=100 {
+            assert!(fresnel_complex(i as f32 / 100.0, 0.0, 0.0).is_finite());
+        }
     }
 
     #[test]
