@@ -269,13 +269,12 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
     ]
 }
 
-/// Worlds whose coordinates Embree does not take (beyond 1.8e18), or whose edge functions overflow or vanish in single precision.
+/// Worlds so large or so small that Embree's edge functions, products of three coordinates, overflow or vanish.
 pub fn extreme() -> Vec<(&'static str, Arc<World>)> {
     let scaled = |mesh: TriangleMesh, scale: f32| of_mesh(mapped(&mesh, |p| p * scale));
     let rng = &mut Rng::new(2);
     vec![
-        ("soup times 1e18", scaled(soup(rng, 100, 0.3), 1e18)),
-        ("ball times 1e25", scaled(bumpy_ball(2), 1e25)),
+        ("soup times 2e17", scaled(soup(rng, 100, 0.3), 2e17)),
         ("ball times 1e-18", scaled(bumpy_ball(2), 1e-18)),
         ("ball times 1e-30", scaled(bumpy_ball(2), 1e-30)),
     ]
