@@ -1,9 +1,10 @@
 //! Unidirectional path tracing: next-event estimation and BSDF sampling at every vertex, combined by the power heuristic
 //! (Veach 1997, section 9.2.4), and Russian roulette on the throughput.
 
+use super::shadow::shadow_ray;
 use super::wave::{FIRST_PATH_GROUP, Lane, Origin, Slot, Stage};
 use crate::geometry::{Hit, Ray, SurfaceInteraction};
-use crate::light::{LightDensity, LightEnd};
+use crate::light::LightDensity;
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::{Vec2, Vec3};
 use crate::sampling::power_heuristic;
@@ -143,10 +144,7 @@ fn sample_light(
         let pdf_bsdf = bsdf.pdf(wo, sample.wi, TransportMode::Radiance).0;
         factor *= power_heuristic(pdf_light, pdf_bsdf) / pdf.0;
     }
-    let ray = match sample.end {
-        LightEnd::Point { p, error, ng } => si.spawn_ray_to(p, error, ng),
-        LightEnd::Infinity => si.spawn_ray(sample.wi),
-    };
+    let ray = shadow_ray(si, sample.wi, sample.end);
     if ray.is_valid() {
         stage.shadows.push(&ray, lane.slot, lane.beta * f * sample.li * factor);
     } else {
