@@ -78,7 +78,7 @@ pub struct RenderArgs {
     pub spp: Option<u32>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = parse_seed)]
     pub seed: u64,
 
     /// Where sample points come from [default: the scene's]
@@ -86,7 +86,7 @@ pub struct RenderArgs {
     pub sampler: Option<SamplerArg>,
 
     /// Greatest number of scattering events of a path, or `unlimited` [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = parse_max_depth)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = parse_max_depth)]
     pub max_depth: Option<MaxDepth>,
 
     /// Pixels of the whole picture [default: the scene's]
@@ -100,7 +100,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = parse_crop)]
     pub crop: Option<PixelRect>,
 
-    /// Render only this pixel: with --sample, to look into a sample that was dropped
+    /// Render only this pixel; with --sample, to look into a sample that was dropped
     #[arg(long, value_name = "x,y", value_parser = parse_pixel, conflicts_with = "crop")]
     pub pixel: Option<PixelRect>,
 
@@ -120,7 +120,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
 
-    /// What answers ray queries
+    /// What answers ray queries: `embree` or `bvh`
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
 
@@ -159,7 +159,7 @@ pub struct InfoArgs {
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
-    /// What answers ray queries
+    /// What answers ray queries: `embree` or `bvh`
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
 
@@ -258,8 +258,13 @@ fn parse_max_depth(text: &str) -> Result<MaxDepth, String> {
         _ => text
             .parse()
             .map(|depth| MaxDepth(Some(depth)))
-            .map_err(|_| "expected a number or `unlimited`".to_owned()),
+            .map_err(|_| "expected a number, 0 or more, or `unlimited`".to_owned()),
     }
+}
+
+fn parse_seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| format!("expected an integer from 0 to {}", u64::MAX))
 }
 
 fn parse_finite(text: &str) -> Result<f32, String> {

@@ -27,12 +27,11 @@ use glam::DAffine3;
 
 use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
+pub use crate::sampling::SamplerKind;
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
-pub use view::{
-    CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, SamplerKind, ViewDesc,
-};
+pub use view::{CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, ViewDesc};
 
 /// A whole scene, as its file describes it.
 ///

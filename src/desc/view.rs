@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::MotionDesc;
 use crate::error::Span;
+use crate::sampling::SamplerKind;
 
 /// One picture to be taken of the scene.
 #[derive(Clone, Debug)]
@@ -125,6 +126,50 @@ pub struct PixelRect {
     pub y1: u32,
 }
 
+impl PixelRect {
+    /// All pixels of a picture.
+    pub fn full(resolution: [u32; 2]) -> Self {
+        Self {
+            x0: 0,
+            y0: 0,
+            x1: resolution[0],
+            y1: resolution[1],
+        }
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.x1 - self.x0
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.y1 - self.y0
+    }
+
+    /// Pixels.
+    pub fn area(&self) -> u64 {
+        u64::from(self.width()) * u64::from(self.height())
+    }
+
+    /// Whether it holds pixel (x, y).
+    #[inline]
+    pub fn contains(&self, x: u32, y: u32) -> bool {
+        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
+    }
+
+    /// The pixels in both; `None` if there are none.
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        let rect = Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        };
+        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect)
+    }
+}
+
 impl CropDesc {
     /// The pixels meant, clamped to the image; pbrt rounds both ends of a window up. Empty only if `resolution` is not the one of
     /// the file, for which the parser has checked it.
@@ -200,13 +245,4 @@ pub struct SamplerDesc {
     pub kind: SamplerKind,
     /// Samples a pixel, positive. Default 16, for `independent` 4.
     pub pixel_samples: u32,
-}
-
-/// A sequence of sample points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SamplerKind {
-    /// Independent random numbers.
-    Independent,
-    /// Owen-scrambled Sobol points; the default.
-    Sobol,
 }

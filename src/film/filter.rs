@@ -1,38 +1,11 @@
 //! Pixel filters, sampled in proportion to their value, so that a camera sample belongs to one pixel.
 
+use crate::desc::FilterKind;
 use crate::math::Vec2;
 use crate::sampling::{PiecewiseConstant1D, warp};
 
-/// One factor of a separable filter, as a function of the distance x from the pixel's centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FilterKind {
-    /// Constant.
-    Box,
-    /// A tent.
-    Triangle,
-    /// A Gaussian less its value at the radius.
-    Gaussian {
-        /// Standard deviation in pixels.
-        sigma: f64,
-    },
-    /// The cubic of Mitchell and Netravali (1988), stretched to the radius.
-    Mitchell {
-        /// Blur.
-        b: f64,
-        /// Ringing.
-        c: f64,
-    },
-    /// sinc(x) sinc(x / tau), stretched as in pbrt: the window ends at the radius.
-    LanczosSinc {
-        /// Cycles within the radius.
-        tau: f64,
-    },
-    /// The four-term Blackman-Harris window.
-    BlackmanHarris,
-}
-
 impl FilterKind {
-    /// Its value at `x`, for a support of `radius`; 0 outside.
+    /// The value of the filter of support `radius` at the distance `x` from the pixel's centre; 0 outside.
     pub fn evaluate(&self, x: f64, radius: f64) -> f64 {
         let x = x.abs();
         if x > radius {

@@ -4,7 +4,8 @@ mod filter;
 mod sensor;
 mod sums;
 
-pub use filter::{FilterKind, FilterSample, PixelFilter};
+pub use crate::desc::{FilterKind, PixelRect};
+pub use filter::{FilterSample, PixelFilter};
 pub use sensor::Sensor;
 pub(crate) use sums::lock;
-pub use sums::{Film, PixelRect, TILE_SIZE, TileSums};
+pub use sums::{Film, TILE_SIZE, TileSums};

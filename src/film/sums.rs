@@ -3,65 +3,10 @@
 
 use std::sync::Mutex;
 
-/// Edge of a tile in pixels. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
-pub const TILE_SIZE: u32 = 64;
+use crate::desc::PixelRect;
 
-/// A rectangle of pixels: origin top left, `x1` and `y1` exclusive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PixelRect {
-    /// First column.
-    pub x0: u32,
-    /// First row.
-    pub y0: u32,
-    /// One past the last column.
-    pub x1: u32,
-    /// One past the last row.
-    pub y1: u32,
-}
-
-impl PixelRect {
-    /// All pixels of a picture.
-    pub fn full(resolution: [u32; 2]) -> Self {
-        Self {
-            x0: 0,
-            y0: 0,
-            x1: resolution[0],
-            y1: resolution[1],
-        }
-    }
-
-    /// Columns.
-    pub fn width(&self) -> u32 {
-        self.x1 - self.x0
-    }
-
-    /// Rows.
-    pub fn height(&self) -> u32 {
-        self.y1 - self.y0
-    }
-
-    /// Pixels.
-    pub fn area(&self) -> u64 {
-        u64::from(self.width()) * u64::from(self.height())
-    }
-
-    /// Whether it holds pixel (x, y).
-    #[inline]
-    pub fn contains(&self, x: u32, y: u32) -> bool {
-        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
-    }
-
-    /// The pixels in both; `None` if there are none.
-    pub fn intersection(&self, other: &Self) -> Option<Self> {
-        let rect = Self {
-            x0: self.x0.max(other.x0),
-            y0: self.y0.max(other.y0),
-            x1: self.x1.min(other.x1),
-            y1: self.y1.min(other.y1),
-        };
-        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect)
-    }
-}
+/// Edge of a tile in pixels: the paths of one at one sample index fit a second level cache. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
+pub const TILE_SIZE: u32 = 32;
 
 /// The sums of one pixel: weighted linear RGB and weights, in units of 2^-64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -241,18 +186,18 @@ mod tests {
     #[test]
     fn tiles_lie_on_the_grid_of_the_whole_picture() {
         let rects: Vec<_> = film().tiles().iter().map(|tile| lock(tile).rect()).collect();
-        assert_eq!(rects.len(), 4);
+        assert_eq!(rects.len(), 6);
         assert_eq!(
             rects[0],
             PixelRect {
                 x0: 60,
                 y0: 10,
                 x1: 64,
-                y1: 64
+                y1: 32
             }
         );
         assert_eq!(
-            rects[3],
+            rects[5],
             PixelRect {
                 x0: 64,
                 y0: 64,
@@ -281,7 +226,7 @@ mod tests {
     #[test]
     fn pixels_are_weighted_means_and_dropped_samples_count_as_black() {
         let film = film();
-        let mut tile = lock(&film.tiles()[3]);
+        let mut tile = lock(&film.tiles()[5]);
         assert!(tile.add(89, 65, Some([1.0, 2.0, 3.0]), 1.0));
         assert!(tile.add(89, 65, Some([5.0, 0.0, 0.0]), -0.5));
         assert!(!tile.add(89, 65, Some([f32::NAN, 0.0, 0.0]), 0.5));

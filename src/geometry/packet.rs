@@ -25,6 +25,10 @@ pub struct Ray {
 }
 
 impl Ray {
+    /// The largest magnitude of an element of origin or direction: squares must stay finite, and Embree, as Debian 12 builds it,
+    /// ends the process above 1.844e18.
+    pub const LARGEST: f32 = 1.8e18;
+
     /// A ray that sees everything, at any distance.
     pub fn new(origin: Vec3, direction: Vec3, time: f32) -> Self {
         Self {
@@ -38,11 +42,14 @@ impl Ray {
         }
     }
 
-    /// Whether a backend may be given it: nothing NaN, origin and direction finite, the direction not zero, time in [0, 1].
+    /// Whether a backend may be given it: nothing NaN, no element of origin and direction beyond [`Ray::LARGEST`], the direction
+    /// not zero, time in [0, 1].
     #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite()
-            && self.direction.is_finite()
+        self.origin.abs().max_element() <= Self::LARGEST
+            && self.direction.abs().max_element() <= Self::LARGEST
+            && !self.origin.is_nan()
+            && !self.direction.is_nan()
             && self.direction != Vec3::ZERO
             && self.tnear >= 0.0
             && !self.tfar.is_nan()
@@ -151,7 +158,7 @@ impl RayPacket {
 }
 
 /// What eight rays hit: ids only, and the backend's distance. Barycentrics and an exact distance are recomputed from the ray
-/// and the primitive by [`World::hit`](super::World::hit), so that backends and vector widths agree.
+/// and the primitive by [`World::interaction`](super::World::interaction), so that backends and vector widths agree.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct HitPacket {

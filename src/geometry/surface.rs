@@ -79,9 +79,11 @@ struct LocalSurface {
     /// As [`SurfaceInteraction::error`], less the rounding of `p`.
     error: f64,
     t: f64,
+    /// Unit length.
     ng: DVec3,
-    ns: DVec3,
-    dpdu: DVec3,
+    /// Of any length but 0.
+    ns: Vec3,
+    dpdu: Vec3,
     uv: Vec2,
 }
 
@@ -104,7 +106,11 @@ impl World {
         let origin = object_from_world.transform_point3(origin);
         let direction = object_from_world.transform_vector3(direction);
         let local = local_surface(shape, hit.primitive, origin, direction, ray);
-        finish(&to_world(&local, &world_from_object, &object_from_world), ray.time, hit)
+        finish(
+            &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
+            ray.time,
+            hit,
+        )
     }
 }
 
@@ -116,15 +122,14 @@ fn local_surface(shape: &Shape, primitive: PrimitiveId, origin: DVec3, direction
 }
 
 fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
-    let ng = local.ng.normalize().as_vec3();
-    let ns = local.ns.try_normalize().map_or(ng, DVec3::as_vec3);
+    let ng = local.ng.as_vec3();
     SurfaceInteraction {
         p: local.p.as_vec3(),
         error: (local.error + rounding_error(local.p, ng)) as f32,
         t: local.t as f32,
         ng,
-        ns,
-        dpdu: local.dpdu.as_vec3(),
+        ns: local.ns.try_normalize().unwrap_or(ng),
+        dpdu: local.dpdu,
         uv: local.uv,
         time,
         hit,
@@ -133,29 +138,35 @@ fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
 
 /// Positions, normals and error bounds through an instance's transform. A backend moves the ray to object space in single
 /// precision; the bound covers what that loses.
-fn to_world(local: &LocalSurface, world_from_object: &DAffine3, object_from_world: &DAffine3) -> LocalSurface {
+fn to_world(
+    local: &LocalSurface,
+    world_from_object: &DAffine3,
+    object_from_world: &DAffine3,
+    is_static: bool,
+) -> LocalSurface {
     let p = world_from_object.transform_point3(local.p);
     let normal = |n: DVec3| object_from_world.matrix3.transpose() * n;
-    let (ng_local, ng) = (local.ng.normalize(), normal(local.ng.normalize()));
+    let ng = normal(local.ng);
     // A distance from a plane shrinks as its normal, transformed, grows.
     let shrink = ng.length().recip();
     let (forward, backward) = (world_from_object.matrix3.abs(), object_from_world.matrix3.abs());
-    let g = f64::from(gamma(4));
+    // Embree interpolates rotations nearly: its matrices are off by up to 2.1e-6 (35 u) at half a turn.
+    let g = f64::from(gamma(if is_static { 4 } else { 36 }));
     let object_error = g * (backward * p.abs() + object_from_world.translation.abs());
     let world_error = g * (forward * local.p.abs() + world_from_object.translation.abs());
     LocalSurface {
         p,
-        error: (local.error + ng_local.abs().dot(object_error)) * shrink + (ng * shrink).abs().dot(world_error),
-        ng,
-        ns: normal(local.ns),
-        dpdu: world_from_object.transform_vector3(local.dpdu),
+        error: (local.error + local.ng.abs().dot(object_error)) * shrink + (ng * shrink).abs().dot(world_error),
+        ng: ng * shrink,
+        ns: normal(local.ns.as_dvec3()).normalize_or_zero().as_vec3(),
+        dpdu: world_from_object.transform_vector3(local.dpdu.as_dvec3()).as_vec3(),
         ..*local
     }
 }
 
-/// How far rounding to single precision moves `p` along the unit normal `n`.
+/// How far rounding to single precision can move `p`, and then the origin of a ray beside it, along the unit normal `n`.
 fn rounding_error(p: DVec3, n: Vec3) -> f64 {
-    n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(1))
+    n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(3))
 }
 
 /// The least error, relative to the size of a primitive: where a plane through the origin is exact a ray must start off it all
@@ -171,8 +182,14 @@ pub const LEAST_ERROR: f64 = 1.0 / (1_u64 << 36) as f64;
 /// is left, as the sum then has one term and the rest is exact.
 pub fn triangle_error(vertices: &[DVec3; 3]) -> f64 {
     let [a, b, c] = *vertices;
+    plane_error(vertices, (b - a).cross(c - a).length())
+}
+
+/// [`triangle_error`] of a triangle, given the length of the cross product of two edges.
+#[inline]
+fn plane_error(vertices: &[DVec3; 3], area: f64) -> f64 {
+    let [a, b, c] = *vertices;
     let extent = a.max(b).max(c) - a.min(b).min(c);
-    let area = (b - a).cross(c - a).length();
     let size = extent.max_element();
     let volume = extent.x * extent.y * extent.z;
     let plane = if volume == 0.0 {
@@ -186,62 +203,75 @@ pub fn triangle_error(vertices: &[DVec3; 3]) -> f64 {
 
 fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
     let vertices = mesh.triangle(triangle, time).map(Vec3::as_dvec3);
-    let [a, b, c] = vertices.map(|v| v - origin);
-    // Signed volumes of the direction and each edge, the barycentrics of Woop, Benthin and Wald (2013), kept inside.
-    let volumes = [
-        direction.dot(c.cross(b)),
-        direction.dot(a.cross(c)),
-        direction.dot(b.cross(a)),
-    ];
-    let sign = (volumes[0] + volumes[1] + volumes[2]).signum();
-    let clamped = volumes.map(|v| (v * sign).max(0.0));
-    let sum = clamped[0] + clamped[1] + clamped[2];
-    let w = if sum > 0.0 {
-        clamped.map(|v| v / sum)
-    } else {
-        [1.0 / 3.0; 3]
+    let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
+    let cross = e1.cross(e2);
+    let area = cross.length();
+    // Moeller and Trumbore (1997); barycentrics are kept inside, where a backend rounded otherwise.
+    let from_corner = origin - vertices[0];
+    let moment = from_corner.cross(direction);
+    let inverse = -1.0 / direction.dot(cross);
+    let (v, w) = match (e2.dot(moment) * inverse, -e1.dot(moment) * inverse) {
+        (v, w) if v.is_finite() && w.is_finite() => clamp_barycentrics(v, w),
+        _ => (1.0 / 3.0, 1.0 / 3.0),
     };
-    let p = vertices[0] * w[0] + vertices[1] * w[1] + vertices[2] * w[2];
-    let t = (p - origin).dot(direction) / direction.length_squared();
+    let p = vertices[0] + e1 * v + e2 * w;
+    let weights = [(1.0 - v - w) as f32, v as f32, w as f32];
+    let corners = mesh.indices()[triangle].map(|v| v as usize);
 
-    let mut ng = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
+    let mut ng = cross / area;
     if mesh.has_flipped_normal() {
         ng = -ng;
     }
-    let corners = mesh.indices()[triangle].map(|v| v as usize);
-    let mut ns = ng;
+    let mut ns = Vec3::ZERO;
     if let Some(normals) = mesh.normals() {
+        let normals = corners.map(|v| normals[v]);
         // With normals given they say which side is out, as in pbrt.
-        let side: Vec3 = corners.iter().map(|&v| normals[v]).sum();
-        if ng.dot(side.as_dvec3()) < 0.0 {
+        if ng.dot((normals[0] + normals[1] + normals[2]).as_dvec3()) < 0.0 {
             ng = -ng;
         }
-        let n: DVec3 = corners.iter().zip(w).map(|(&v, w)| normals[v].as_dvec3() * w).sum();
-        ns = if n == DVec3::ZERO { ng } else { n };
+        ns = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
     }
-    let uvs = mesh
-        .uvs()
-        .map_or([Vec2::ZERO, Vec2::X, Vec2::ONE], |uvs| corners.map(|v| uvs[v]));
-    let uv = uvs[0] * w[0] as f32 + uvs[1] * w[1] as f32 + uvs[2] * w[2] as f32;
+    if ns == Vec3::ZERO {
+        ns = ng.as_vec3();
+    }
+    let (uv, dpdu) = match mesh.uvs() {
+        // Without coordinates: (0, 0), (1, 0), (1, 1).
+        None => (Vec2::new(weights[1] + weights[2], weights[2]), e1.as_vec3()),
+        Some(uvs) => {
+            let uvs = corners.map(|v| uvs[v]);
+            let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
+            (uv, triangle_dpdu(e1.as_vec3(), e2.as_vec3(), &uvs))
+        }
+    };
+    let t = (p - origin).dot(direction) / direction.length_squared();
     LocalSurface {
         p,
-        error: triangle_error(&vertices),
+        error: plane_error(&vertices, area),
         t,
         ng,
         ns,
-        dpdu: triangle_dpdu(&vertices, &uvs),
+        dpdu,
         uv,
     }
 }
 
+/// The nearest barycentrics of the second and third corner inside the triangle, nearly.
+#[inline]
+fn clamp_barycentrics(v: f64, w: f64) -> (f64, f64) {
+    let (v, w) = (v.max(0.0), w.max(0.0));
+    let sum = v + w;
+    if sum > 1.0 { (v / sum, w / sum) } else { (v, w) }
+}
+
 /// Solves dp = dpdu du + dpdv dv along two edges; zero where the texture coordinates are degenerate.
-fn triangle_dpdu(p: &[DVec3; 3], uv: &[Vec2; 3]) -> DVec3 {
-    let (d1, d2) = ((uv[1] - uv[0]).as_dvec2(), (uv[2] - uv[0]).as_dvec2());
+fn triangle_dpdu(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> Vec3 {
+    let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = d1.perp_dot(d2);
     if determinant == 0.0 {
-        return DVec3::ZERO;
+        Vec3::ZERO
+    } else {
+        (e1 * d2.y - e2 * d1.y) / determinant
     }
-    ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) / determinant
 }
 
 fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) -> LocalSurface {
@@ -257,7 +287,7 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
     let unit = (o + d * t).normalize();
     let world = sphere.world_from_object();
     let p = world.transform_point3(unit * sphere.radius());
-    let outward = object.matrix3.transpose() * unit;
+    let outward = (object.matrix3.transpose() * unit).normalize();
     let ng = if sphere.has_flipped_normal() { -outward } else { outward };
     let phi = unit.y.atan2(unit.x);
     let phi = if phi < 0.0 { phi + std::f64::consts::TAU } else { phi };
@@ -272,8 +302,8 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         error: LEAST_ERROR * (p - sphere.center()).length(),
         t,
         ng,
-        ns: ng,
-        dpdu,
+        ns: ng.as_vec3(),
+        dpdu: dpdu.as_vec3(),
         uv,
     }
 }

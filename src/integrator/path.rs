@@ -38,7 +38,14 @@ impl PathIntegrator {
         let slot = &mut stage.slots[lane.slot as usize];
         let bsdf = stage.scene.material(hit.geometry).bsdf(&si, &mut slot.lambda);
         let [light_x, light_y, u_light, u_roulette] = slot.stream.draw4(FIRST_PATH_GROUP + 2 * stage.depth);
-        let [bsdf_x, bsdf_y, u_lobe, _] = slot.stream.draw4(FIRST_PATH_GROUP + 2 * stage.depth + 1);
+        let bsdf_group = FIRST_PATH_GROUP + 2 * stage.depth + 1;
+        // The first two numbers are the same, and cheaper alone.
+        let ([bsdf_x, bsdf_y], u_lobe) = if bsdf.has_several_lobes() {
+            let [x, y, lobe, _] = slot.stream.draw4(bsdf_group);
+            ([x, y], lobe)
+        } else {
+            (slot.stream.draw2(bsdf_group), 0.0)
+        };
         if !bsdf.is_delta() {
             sample_light(stage, lane, &si, &bsdf, wo, u_light, Vec2::new(light_x, light_y));
         }

@@ -155,7 +155,7 @@ impl AreaLight {
         };
         SurfaceSample {
             p,
-            error: ng.abs().dot(p.abs()) * gamma(1) + (LEAST_ERROR * radius) as f32,
+            error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
             ng,
             pdf,
         }
@@ -172,7 +172,7 @@ impl EmitterShape {
         match self {
             Self::Triangle { vertices, ng } => {
                 let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(6) * ng.abs().dot(largest)
+                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
             }
             Self::Sphere { .. } => 0.0,
         }

@@ -34,7 +34,13 @@ pub fn fresnel_complex(cos_i: f32, eta: f32, k: f32) -> f32 {
     let perpendicular = (perpendicular_sum - perpendicular_term) / (perpendicular_sum + perpendicular_term);
     let parallel_sum = cos2 * a2_plus_b2 + sin2 * sin2;
     let parallel_term = perpendicular_term * sin2;
-    let parallel = perpendicular * (parallel_sum - parallel_term) / (parallel_sum + parallel_term);
+    let both = parallel_sum + parallel_term;
+    // Only an index of 0 (the fourth lane of rgb mode) seen head on has nothing here.
+    let parallel = if both > 0.0 {
+        perpendicular * (parallel_sum - parallel_term) / both
+    } else {
+        perpendicular
+    };
     0.5 * (perpendicular + parallel)
 }
 

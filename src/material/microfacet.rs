@@ -28,6 +28,11 @@ impl Ggx {
         })
     }
 
+    /// Whether it is the same along both tangents.
+    pub fn is_isotropic(&self) -> bool {
+        self.alpha_x == self.alpha_y
+    }
+
     /// The slope for pbrt-v4's perceptual roughness.
     pub fn alpha_from_roughness(roughness: f32) -> f32 {
         roughness.sqrt()
@@ -102,7 +107,7 @@ mod tests {
         let mut sum = 0.0;
         for i in 0..rows {
             // Squared, as narrow distributions need their steps near the pole.
-            let s = (i as f64 + 0.5) / f64::from(rows);
+            let s = (f64::from(i) + 0.5) / f64::from(rows);
             let theta = s * s * std::f64::consts::FRAC_PI_2;
             let d_theta = 2.0 * s * std::f64::consts::FRAC_PI_2 / f64::from(rows);
             for j in 0..columns {

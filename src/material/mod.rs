@@ -64,8 +64,22 @@ impl Material {
     /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf {
-        let frame = Frame::from_normal_tangent(si.ns, si.dpdu);
+        let frame = if self.is_anisotropic() {
+            Frame::from_normal_tangent(si.ns, si.dpdu)
+        } else {
+            Frame::from_normal(si.ns)
+        };
         Bsdf::new(frame, self.lobe(lambda))
+    }
+
+    /// Whether it matters which way the tangent points.
+    fn is_anisotropic(&self) -> bool {
+        match self {
+            Self::Diffuse { .. } => false,
+            Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => {
+                roughness.is_some_and(|ggx| !ggx.is_isotropic())
+            }
+        }
     }
 
     fn lobe(&self, lambda: &mut Wavelengths) -> Lobe {

@@ -9,27 +9,9 @@ pub const fn gamma(n: u32) -> f32 {
 }
 
 /// The origin of a ray that leaves point `p` in direction `w`, when the surface (of unit normal `n`) that a backend sees may be
-/// `error` away from `p` along the normal: the nearest point that is surely on the side that `w` points to (after Pharr, Jakob,
-/// Humphreys 2023, section 6.8.6).
+/// `error` away from `p` along the normal: surely on the side that `w` points to (after Pharr, Jakob, Humphreys 2023, section
+/// 6.8.6). `error` must allow for the rounding of the result.
 #[inline]
 pub fn offset_ray_origin(p: Vec3, error: f32, n: Vec3, w: Vec3) -> Vec3 {
-    let offset = if w.dot(n) < 0.0 { -error * n } else { error * n };
-    let q = p + offset;
-    Vec3::new(
-        round_away(q.x, offset.x),
-        round_away(q.y, offset.y),
-        round_away(q.z, offset.z),
-    )
-}
-
-/// The neighbour of `x` in the direction of `towards`, as the addition before may have rounded the other way.
-#[inline]
-fn round_away(x: f32, towards: f32) -> f32 {
-    if towards > 0.0 {
-        x.next_up()
-    } else if towards < 0.0 {
-        x.next_down()
-    } else {
-        x
-    }
+    p + n * error.copysign(w.dot(n))
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use super::shapes::animated;
 use crate::camera::{Camera, CameraSpec, Projection};
-use crate::desc::{self, CameraKind, SceneDesc, ViewDesc};
+use crate::desc::{CameraKind, SceneDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
-use crate::film::{Film, FilterKind, PixelFilter, PixelRect, Sensor};
+use crate::film::{Film, PixelFilter, PixelRect, Sensor};
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::ColorMode;
 
@@ -60,15 +60,7 @@ impl View {
         let problem =
             |message: String| Error::Scene(vec![desc.sources.diagnostic(Severity::Error, view.span, message)]);
         let resolution = overrides.resolution.unwrap_or(view.film.resolution);
-        let crop = overrides.crop.unwrap_or_else(|| {
-            let crop = view.film.crop.pixels(resolution);
-            PixelRect {
-                x0: crop.x0,
-                y0: crop.y0,
-                x1: crop.x1,
-                y1: crop.y1,
-            }
-        });
+        let crop = overrides.crop.unwrap_or_else(|| view.film.crop.pixels(resolution));
         if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 || crop.x1 > resolution[0] || crop.y1 > resolution[1] {
             let [width, height] = resolution;
             return Err(Error::Usage(format!(
@@ -76,12 +68,9 @@ impl View {
                 crop.x0, crop.y0, crop.x1, crop.y1
             )));
         }
-        let filter = PixelFilter::new(filter_kind(view.filter.kind), view.filter.radius)
+        let filter = PixelFilter::new(view.filter.kind, view.filter.radius)
             .ok_or_else(|| problem("this pixel filter is zero or integrates to zero".to_owned()))?;
-        let kind = overrides.sampler.unwrap_or(match view.sampler.kind {
-            desc::SamplerKind::Independent => SamplerKind::Independent,
-            desc::SamplerKind::Sobol => SamplerKind::Sobol,
-        });
+        let kind = overrides.sampler.unwrap_or(view.sampler.kind);
         let spp = overrides.spp.unwrap_or(view.sampler.pixel_samples);
         if let Some(sample) = overrides.sample.filter(|&sample| sample >= spp) {
             return Err(Error::Usage(format!(
@@ -122,15 +111,4 @@ fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Resul
         shutter: camera.shutter.map(|time| (time - start) / (end - start)),
         world_from_camera: animated(&camera.world_from_camera)?,
     })
-}
-
-fn filter_kind(kind: desc::FilterKind) -> FilterKind {
-    match kind {
-        desc::FilterKind::Box => FilterKind::Box,
-        desc::FilterKind::Triangle => FilterKind::Triangle,
-        desc::FilterKind::Gaussian { sigma } => FilterKind::Gaussian { sigma },
-        desc::FilterKind::Mitchell { b, c } => FilterKind::Mitchell { b, c },
-        desc::FilterKind::LanczosSinc { tau } => FilterKind::LanczosSinc { tau },
-        desc::FilterKind::BlackmanHarris => FilterKind::BlackmanHarris,
-    }
 }

@@ -1,12 +1,12 @@
 //! Backends, brute force and the judge about the same rays.
 
-use std::fmt::Debug;
 use std::ops::AddAssign;
 use std::sync::Arc;
 
 use lucerna::accel::brute::Brute;
+use lucerna::accel::bvh::Bvh;
 use lucerna::accel::judge::Judge;
-use lucerna::accel::{Accel, FilterHit, HitFilter};
+use lucerna::accel::{Accel, BuildOptions, FilterHit, HitFilter};
 use lucerna::geometry::{Geometry, GeometryId, Hit, Opacity, PrimitiveId, Ray, Shape, World, WorldBuilder};
 use rayon::prelude::*;
 
@@ -25,6 +25,8 @@ struct Count {
     ambiguous: usize,
     /// Ambiguous rays about which the backends and brute force do not all say the same.
     differing: usize,
+    /// Answers of Embree that only the lenient judge allows.
+    lenient: usize,
     wrong: usize,
 }
 
@@ -35,6 +37,7 @@ impl AddAssign for Count {
         self.judged += other.judged;
         self.ambiguous += other.ambiguous;
         self.differing += other.differing;
+        self.lenient += other.lenient;
         self.wrong += other.wrong;
     }
 }
@@ -43,6 +46,8 @@ impl AddAssign for Count {
 struct Court<'a> {
     name: &'a str,
     judge: Judge,
+    /// For Embree, where it says what the other would not allow.
+    lenient: Judge,
     backends: Vec<(String, Box<dyn Accel>)>,
     filter: Option<&'a dyn HitFilter>,
 }
@@ -91,33 +96,44 @@ impl Court<'_> {
             count.judged += 1;
             count.ambiguous += usize::from(!verdict.is_clear());
             for ((name, _), (nearest, any)) in self.backends.iter().zip(nearest.iter().zip(&any)) {
-                if !verdict.allows(nearest[i]) {
-                    self.report(name, ray, &nearest[i], &verdict, &mut count);
+                if verdict.allows(nearest[i]) && verdict.allows_occluded(any[i]) {
+                    continue;
                 }
-                if !verdict.allows_occluded(any[i]) {
-                    self.report(name, ray, &any[i], &verdict, &mut count);
+                if name == "embree" {
+                    let verdict = self.lenient.judge(ray, |hit| self.accepts(ray, hit));
+                    if verdict.allows(nearest[i]) && verdict.allows_occluded(any[i]) {
+                        count.lenient += 1;
+                        continue;
+                    }
+                }
+                count.wrong += 1;
+                if count.wrong <= 3 {
+                    println!("{}, {name}: {ray:?}", self.name);
+                    println!("  answers {:?}, occluded {}\n  judged {verdict:?}", nearest[i], any[i]);
                 }
             }
         }
         count
     }
-
-    fn report(&self, backend: &str, ray: &Ray, answer: &dyn Debug, verdict: &dyn Debug, count: &mut Count) {
-        count.wrong += 1;
-        if count.wrong <= 3 {
-            println!(
-                "{}, {backend}: {ray:?}\n  answers {answer:?}\n  judged  {verdict:?}",
-                self.name
-            );
-        }
-    }
 }
 
 fn try_world(name: &str, world: &Arc<World>, filter: Option<&dyn HitFilter>, rays: usize, seed: u64) -> Count {
+    try_backends(name, world, backends(world), filter, rays, seed)
+}
+
+fn try_backends(
+    name: &str,
+    world: &Arc<World>,
+    backends: Vec<(String, Box<dyn Accel>)>,
+    filter: Option<&dyn HitFilter>,
+    rays: usize,
+    seed: u64,
+) -> Count {
     let mut court = Court {
         name,
         judge: Judge::new(world),
-        backends: backends(world),
+        lenient: Judge::new(world).with_pluecker_margins(),
+        backends,
         filter,
     };
     if !is_full() {
@@ -157,12 +173,25 @@ fn backends_answer_what_the_judge_allows() {
     );
 }
 
+#[test]
+fn our_bvh_answers_what_the_judge_allows_at_the_ends_of_single_precision() {
+    for (seed, (name, world)) in worlds::extreme().iter().enumerate() {
+        let ours = backends(world)
+            .into_iter()
+            .filter(|(name, _)| name != "embree")
+            .collect();
+        let total = try_backends(name, world, ours, None, 20_000, seed as u64);
+        assert_eq!(total.wrong, 0, "{name}");
+        assert!(total.hits > 5000, "{name}");
+    }
+}
+
 /// Accepts by a hash of ray and primitive.
 struct Hashed;
 
 impl HitFilter for Hashed {
     fn accept(&self, hit: &FilterHit) -> bool {
-        hash(u64::from(hit.ray_id) << 32 | u64::from(hit.primitive.0)) % 3 == 0
+        hash(u64::from(hit.ray_id) << 32 | u64::from(hit.primitive.0)).is_multiple_of(3)
     }
 }
 
@@ -220,12 +249,16 @@ fn where_distances_are_equal_the_least_ids_are_reported() {
     let same = worlds::soup(rng, 1, 1.0);
     repeated.extend(std::iter::repeat_n([0, 1, 2], 100_000));
     let many = lucerna::geometry::TriangleMesh::new(vec![same.positions(0).to_vec()], repeated).unwrap();
-    for (world, count) in [(world, 20_000), (worlds::of_mesh(many), 2_000)] {
+    for (world, count) in [(world, 20_000), (worlds::of_mesh(many), 200)] {
         let maker = RayMaker::new(&world);
         let rays: Vec<Ray> = (0..count).map(|id| maker.ray(rng, id)).collect();
         let mut hits = 0;
-        for (name, backend) in backends(&world).iter().filter(|(name, _)| name.contains("bvh")) {
-            for (ray, answer) in rays.iter().zip(intersect(&**backend, &rays, None)) {
+        let options = BuildOptions::default();
+        for (name, backend) in [
+            ("avx2", Bvh::build(&world, &options)),
+            ("portable", Bvh::build_portable(&world, &options)),
+        ] {
+            for (ray, answer) in rays.iter().zip(intersect(&backend, &rays, None)) {
                 if let Some((hit, _)) = answer {
                     hits += 1;
                     assert_eq!(hit.geometry, GeometryId(0), "{name}: {ray:?}");
@@ -236,6 +269,6 @@ fn where_distances_are_equal_the_least_ids_are_reported() {
                 }
             }
         }
-        assert!(hits > 200, "{hits}");
+        assert!(hits > 50, "{hits}");
     }
 }

@@ -60,11 +60,14 @@ impl Closed {
         Ray::new(origin, direction, rng.unit())
     }
 
-    fn escaped(&self, accel: &dyn Accel, rays: usize, seed: u64) -> usize {
-        let batches = (0..rays.div_ceil(BATCH)).into_par_iter();
+    /// How many of `count` rays get out.
+    fn escaped(&self, accel: &dyn Accel, count: usize, seed: u64) -> usize {
+        let batches = (0..count.div_ceil(BATCH)).into_par_iter();
         let of_batch = |batch: usize| {
             let rng = &mut Rng::new(hash(seed << 40 | batch as u64));
-            let rays: Vec<Ray> = (0..BATCH).map(|_| self.ray(rng)).collect();
+            let rays: Vec<Ray> = (batch * BATCH..count.min((batch + 1) * BATCH))
+                .map(|_| self.ray(rng))
+                .collect();
             intersect(accel, &rays, None)
                 .iter()
                 .filter(|answer| answer.is_none())
@@ -95,7 +98,7 @@ fn all() -> Vec<Closed> {
             worlds::mapped(&worlds::bumpy_ball(4), |p| p * Vec3::new(1.0, 1e-3, 1.0)),
             None,
         ),
-        Closed::new("huge ball", worlds::mapped(&worlds::bumpy_ball(4), |p| p * 5e17), None),
+        Closed::new("huge ball", worlds::mapped(&worlds::bumpy_ball(4), |p| p * 1e18), None),
         Closed::new(
             "placed cube",
             worlds::cube(),
@@ -127,6 +130,10 @@ fn no_ray_escapes_from_a_closed_mesh() {
             } else {
                 (rays / 10).min(10_000_000)
             };
+            // Its edge functions overflow there.
+            if name == "embree" && closed.name == "huge ball" {
+                continue;
+            }
             let escaped = closed.escaped(&**backend, rays, seed as u64);
             println!("{}, {name}: {escaped} of {rays} escaped", closed.name);
             assert!(

@@ -102,8 +102,12 @@ impl RayMaker {
         let mut ray = Ray::new(origin, direction, time);
         if rng.below(4) == 0 {
             ray.direction *= 10.0_f32.powf(rng.range(-6.0, 6.0));
+            if !ray.is_valid() {
+                ray.direction = Vec3::Z;
+            }
         }
-        let size = self.bounds.extent().length() / ray.direction.length();
+        let lengths = [self.bounds.extent(), ray.direction].map(|v| v.as_dvec3().length());
+        let size = ((lengths[0] / lengths[1]) as f32).min(1e38);
         if rng.below(4) == 0 {
             ray.tnear = rng.unit() * 0.5 * size;
         }

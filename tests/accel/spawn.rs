@@ -103,7 +103,7 @@ fn towards(world: &World, rng: &mut Rng) -> Ray {
 fn a_ray_does_not_meet_the_primitive_that_it_leaves() {
     let rng = &mut Rng::new(53);
     for (name, world) in all(rng) {
-        let first: Vec<Ray> = (0..40_000)
+        let first: Vec<Ray> = (0..12_000)
             .map(|_| towards(&world, rng))
             .filter(Ray::is_valid)
             .collect();

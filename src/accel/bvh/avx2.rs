@@ -11,7 +11,7 @@ use super::kernel::{BoxHits, Kernel, TriangleHits};
 use super::leaf::{BlockIds, Corners, LANES};
 use super::node::{Planes, WIDTH};
 use super::query::Query;
-use super::ray::{LocalRay, Slab};
+use super::ray::{FAR_SLACK, LocalRay, NEAR_SLACK, Slab};
 use super::traverse::{self, Level};
 use super::triangle::Shear;
 
@@ -25,6 +25,8 @@ impl Avx2 {
         std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
     }
 }
+
+const CACHE_LINE: usize = 64;
 
 #[repr(align(32))]
 struct Aligned<T>(T);
@@ -40,6 +42,15 @@ impl Kernel for Avx2 {
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
         // SAFETY: `self` proves that the processor has AVX2.
         unsafe { triangles(corners, ids, mask, shear, range) }
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, items: &[T], index: usize) {
+        let item = items.as_ptr().wrapping_add(index).cast::<i8>();
+        for line in 0..size_of::<T>().div_ceil(CACHE_LINE) {
+            // SAFETY: a hint, which reads nothing: any address is allowed.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(item.wrapping_add(line * CACHE_LINE)) };
+        }
     }
 
     #[inline(always)]
@@ -77,25 +88,21 @@ fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
         let row = unsafe { _mm256_load_ps(row.as_ptr()) };
         _mm256_mul_ps(_mm256_sub_ps(row, _mm256_set1_ps(origin)), _mm256_set1_ps(scale))
     };
-    let near = |axis: usize| {
-        distances(
-            2 * axis + slab.negative[axis],
-            slab.near_origin[axis],
-            slab.near_scale[axis],
-        )
-    };
+    let near = |axis: usize| distances(2 * axis + slab.negative[axis], slab.near_origin[axis], slab.scale[axis]);
     let far = |axis: usize| {
         distances(
             2 * axis + 1 - slab.negative[axis],
             slab.far_origin[axis],
-            slab.far_scale[axis],
+            slab.scale[axis],
         )
     };
-    // Where an operand is NaN the result is the second.
-    let entry = _mm256_max_ps(near(0), _mm256_set1_ps(tnear));
-    let entry = _mm256_max_ps(near(2), _mm256_max_ps(near(1), entry));
-    let exit = _mm256_min_ps(far(0), _mm256_set1_ps(tfar));
-    let exit = _mm256_min_ps(far(2), _mm256_min_ps(far(1), exit));
+    // Where an operand is NaN the result is the second; a NaN takes no box away.
+    let entry = _mm256_max_ps(near(1), _mm256_max_ps(near(0), _mm256_set1_ps(f32::NEG_INFINITY)));
+    let entry = _mm256_mul_ps(_mm256_max_ps(near(2), entry), _mm256_set1_ps(NEAR_SLACK));
+    let entry = _mm256_max_ps(entry, _mm256_set1_ps(tnear));
+    let exit = _mm256_min_ps(far(1), _mm256_min_ps(far(0), _mm256_set1_ps(f32::INFINITY)));
+    let exit = _mm256_mul_ps(_mm256_min_ps(far(2), exit), _mm256_set1_ps(FAR_SLACK));
+    let exit = _mm256_min_ps(exit, _mm256_set1_ps(tfar));
     let mut result = Aligned([0.0; WIDTH]);
     // SAFETY: eight floats, aligned to 32 bytes.
     unsafe { _mm256_store_ps(result.0.as_mut_ptr(), entry) };

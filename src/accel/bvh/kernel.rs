@@ -4,7 +4,7 @@ use super::Scene;
 use super::leaf::{BlockIds, Corners, LANES};
 use super::node::{Planes, WIDTH};
 use super::query::Query;
-use super::ray::{LocalRay, Slab};
+use super::ray::{FAR_SLACK, LocalRay, NEAR_SLACK, Slab};
 use super::traverse::{self, Level};
 use super::triangle::{Shear, greatest, least};
 
@@ -34,6 +34,9 @@ pub trait Kernel: Copy + Send + Sync {
     /// Which of four triangles whose mask shares a bit with `mask` a ray meets in `range`: (tnear, tfar].
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits;
 
+    /// Fetches a node or a block into the cache, if the processor will; `index` may be any number.
+    fn prefetch<T>(self, items: &[T], index: usize);
+
     /// [`traverse::group`] compiled for this kernel.
     fn group<const ANY: bool>(
         self,
@@ -52,18 +55,22 @@ pub struct Portable;
 impl Kernel for Portable {
     #[inline(always)]
     fn boxes(self, planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
-        let mut entry = [tnear; WIDTH];
-        let mut exit = [tfar; WIDTH];
+        let mut entry = [f32::NEG_INFINITY; WIDTH];
+        let mut exit = [f32::INFINITY; WIDTH];
         for axis in 0..3 {
             let near = &planes.0[2 * axis + slab.negative[axis]];
             let far = &planes.0[2 * axis + 1 - slab.negative[axis]];
             for slot in 0..WIDTH {
                 // A NaN, zero times infinity, leaves the distance so far: it takes no box away.
-                let enter = (near[slot] - slab.near_origin[axis]) * slab.near_scale[axis];
+                let enter = (near[slot] - slab.near_origin[axis]) * slab.scale[axis];
                 entry[slot] = greatest(enter, entry[slot]);
-                let leave = (far[slot] - slab.far_origin[axis]) * slab.far_scale[axis];
+                let leave = (far[slot] - slab.far_origin[axis]) * slab.scale[axis];
                 exit[slot] = least(leave, exit[slot]);
             }
+        }
+        for slot in 0..WIDTH {
+            entry[slot] = greatest(entry[slot] * NEAR_SLACK, tnear);
+            exit[slot] = least(exit[slot] * FAR_SLACK, tfar);
         }
         let hit = |mask, slot: usize| mask | u32::from(entry[slot] <= exit[slot]) << slot;
         BoxHits {
@@ -92,6 +99,9 @@ impl Kernel for Portable {
         }
         hits
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _items: &[T], _index: usize) {}
 
     fn group<const ANY: bool>(
         self,

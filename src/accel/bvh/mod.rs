@@ -1,7 +1,7 @@
-//! Our own BVH, pure Rust: a binned SAH build ([`build`], [`bins`]) collapsed to eight children a node ([`collapse`]), and one
-//! traversal ([`traverse`]) over a kernel of vector instructions that is chosen at run time ([`kernel`], [`avx2`]).
+//! Our own BVH, pure Rust: a binned SAH build (`build`, `bins`) collapsed to eight children a node (`collapse`), and one
+//! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
 //!
-//! It is watertight: [`triangle`] says how two triangles leave no gap at their edge, [`ray`] why no box is passed over whose
+//! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
 //! triangle would be hit. Both kernels give the same bits.
 
 #[cfg(target_arch = "x86_64")]
@@ -44,7 +44,8 @@ struct Scene {
 /// An 8-wide BVH over a world: one tree over what is in world space and over the instances, one for each group.
 ///
 /// Hits are found in single precision by the watertight test (of spheres, in double precision), and where distances are equal
-/// the hit of least (geometry, primitive, instance) is reported; an instance precedes "none". The answer for a ray does not
+/// the hit of least (geometry, primitive, instance) is reported; an instance precedes "none". Hits count beyond `tnear`, up to and
+/// with `tfar`: a ray that starts in the plane of a triangle does not meet it. The answer for a ray does not
 /// depend on the other rays of a call, nor on the instructions of the processor.
 pub struct Bvh {
     scene: Scene,

@@ -15,8 +15,10 @@ const U: f32 = f32::EPSILON / 2.0;
 pub const MARGIN: f32 = 6.0 * U;
 
 /// Distances to planes are taken as (plane - origin) / direction, in three roundings: at most 3u off, relatively. The near one
-/// is made shorter and the far one longer by more than that (Ize 2013, "Robust BVH Ray Traversal", JCGT 2(2)).
-const SLACK: f32 = 8.0 * U;
+/// is made shorter and the far one longer by these factors, more than that (Ize 2013, "Robust BVH Ray Traversal", JCGT 2(2)).
+pub const NEAR_SLACK: f32 = 1.0 - 8.0 * U;
+/// See [`NEAR_SLACK`].
+pub const FAR_SLACK: f32 = 1.0 + 8.0 * U;
 
 /// The part of a ray that the box test needs. Near and far are by the sign of the direction.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +27,8 @@ pub struct Slab {
     pub near_origin: [f32; 3],
     /// Origin for the far planes, moved backward.
     pub far_origin: [f32; 3],
-    /// Reciprocal direction for the near planes; infinite for zero.
-    pub near_scale: [f32; 3],
-    /// Reciprocal direction for the far planes.
-    pub far_scale: [f32; 3],
+    /// Reciprocal direction; infinite for zero.
+    pub scale: [f32; 3],
     /// 1 where the direction is negative, so that the near plane is the upper one; else 0.
     pub negative: [usize; 3],
 }
@@ -41,17 +41,14 @@ impl Slab {
         let mut slab = Self {
             near_origin: [0.0; 3],
             far_origin: [0.0; 3],
-            near_scale: [0.0; 3],
-            far_scale: [0.0; 3],
+            scale: [0.0; 3],
             negative: [0; 3],
         };
         for i in 0..3 {
             let margin = (MARGIN * (size[i] + greatest)).copysign(direction[i]);
             slab.near_origin[i] = origin[i] + margin;
             slab.far_origin[i] = origin[i] - margin;
-            let reciprocal = 1.0 / direction[i];
-            slab.near_scale[i] = reciprocal * (1.0 - SLACK);
-            slab.far_scale[i] = reciprocal * (1.0 + SLACK);
+            slab.scale[i] = 1.0 / direction[i];
             slab.negative[i] = usize::from(direction[i].is_sign_negative());
         }
         slab

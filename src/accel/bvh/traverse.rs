@@ -83,7 +83,9 @@ impl<K: Kernel> Walk<'_, K> {
                     let planes = node.planes(fraction, &mut planes);
                     let hits = self.kernel.boxes(planes, &self.ray.slab, query.tnear, query.cull);
                     if hits.mask != 0 {
-                        current = push::<ANY>(&hits, node.children(), stack, &mut depth);
+                        let children = node.children();
+                        self.prefetch(tree, hits.mask, children);
+                        current = push::<ANY>(&hits, children, stack, &mut depth);
                         continue;
                     }
                     false
@@ -114,6 +116,20 @@ impl<K: Kernel> Walk<'_, K> {
                     break;
                 }
             }
+        }
+    }
+
+    /// Fetches the children that are hit, while the order of them is found out.
+    #[inline(always)]
+    fn prefetch<N: Node, B: Block>(&self, tree: &Tree<N, B>, mask: u32, children: &[ChildRef; WIDTH]) {
+        let mut rest = mask;
+        while rest != 0 {
+            match children[rest.trailing_zeros() as usize % WIDTH].get() {
+                Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
+                Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
+                Child::Sphere(_) | Child::Instance(_) => {}
+            }
+            rest &= rest - 1;
         }
     }
 
@@ -159,7 +175,7 @@ impl<K: Kernel> Walk<'_, K> {
         query.offer_sphere(&spheres[primitive as usize], self.ray, candidate)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn instance<const ANY: bool>(&self, index: usize, query: &mut Query, stack: &mut [u64]) -> bool {
         let id = InstanceId::from_index(index);
         let instance = self.scene.world.instance(id);
@@ -190,32 +206,55 @@ fn push<const ANY: bool>(
 ) -> ChildRef {
     let mut rest = hits.mask;
     let mut take = || {
-        let slot = rest.trailing_zeros() as usize;
+        let slot = rest.trailing_zeros() as usize % WIDTH;
         rest &= rest - 1;
         // Distances are not negative: their bits have the order of their values.
-        (
-            u64::from(hits.entry[slot].to_bits()) << 32 | u64::from(children[slot].0),
-            rest != 0,
-        )
+        let entry = u64::from(hits.entry[slot].to_bits()) << 32 | u64::from(children[slot].0);
+        (entry, rest == 0)
     };
-    let (mut nearest, mut more) = take();
-    let first = *depth;
-    while more {
+    let (a, last) = take();
+    if last {
+        return ChildRef(a as u32);
+    }
+    let (b, last) = take();
+    let (mut nearest, b) = in_order(a, b);
+    // The farthest is the lowest on the stack.
+    stack[*depth] = b;
+    *depth += 1;
+    if last {
+        return ChildRef(nearest as u32);
+    }
+    let (c, mut last) = take();
+    let c = take_nearer(&mut nearest, c);
+    let (b, c) = in_order(b, c);
+    stack[*depth - 1] = c;
+    stack[*depth] = b;
+    *depth += 1;
+    let first = *depth - 2;
+    while !last {
         let entry;
-        (entry, more) = take();
-        if ANY {
-            stack[*depth] = entry;
-        } else {
-            let far = nearest.max(entry);
-            nearest = nearest.min(entry);
-            let mut place = *depth;
-            while place > first && stack[place - 1] < far {
-                stack[place] = stack[place - 1];
-                place -= 1;
-            }
-            stack[place] = far;
+        (entry, last) = take();
+        let far = take_nearer(&mut nearest, entry);
+        let mut place = *depth;
+        while !ANY && place > first && stack[place - 1] < far {
+            stack[place] = stack[place - 1];
+            place -= 1;
         }
+        stack[place] = far;
         *depth += 1;
     }
     ChildRef(nearest as u32)
+}
+
+#[inline(always)]
+fn in_order(a: u64, b: u64) -> (u64, u64) {
+    (a.min(b), a.max(b))
+}
+
+/// Makes `nearest` the nearer of the two and returns the other.
+#[inline(always)]
+fn take_nearer(nearest: &mut u64, entry: u64) -> u64 {
+    let far;
+    (*nearest, far) = in_order(*nearest, entry);
+    far
 }

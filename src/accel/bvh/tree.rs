@@ -6,7 +6,7 @@ use super::build::{self, BuildParams, Item};
 use super::collapse::collapse;
 use super::leaf::{Block, FixedBlock, MovingBlock};
 use super::node::{Child, ChildRef, FixedNode, MovingNode, Node};
-use crate::geometry::{GeometryId, PrimitiveId, Shape, TriangleMesh, World};
+use crate::geometry::{GeometryId, PrimitiveId, Shape, Sphere, TriangleMesh, World};
 use crate::math::Bounds3;
 
 /// A tree of 8-wide nodes; the root is the first.
@@ -88,7 +88,7 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
     }
     for &id in members {
         if let Shape::Spheres(shapes) = &world.geometry(id).shape {
-            boxes.extend(shapes.iter().map(|sphere| sphere.bounds()));
+            boxes.extend(shapes.iter().map(Sphere::bounds));
             spheres.extend((0..shapes.len()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }

@@ -121,7 +121,7 @@ impl Sheared {
             return false;
         }
         // Zero, or NaN where the products overflow.
-        let is_sure = |volume: f32| volume < 0.0 || volume > 0.0;
+        let is_sure = |volume: f32| volume.abs() > 0.0;
         (is_sure(u) && is_sure(v) && is_sure(w)) || self.resolve().is_some()
     }
 

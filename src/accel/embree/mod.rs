@@ -22,6 +22,12 @@
 //! | `occluded1` | 9.2 | 3.4 |
 //!
 //! Embree 4 has no streams; shadow rays take `occluded8` there.
+//!
+//! # Limits
+//!
+//! Debian 12's library checks its assertions: a ray that takes part and is not valid, or has a coordinate of origin or direction
+//! beyond 1.844e18 (where products of three overflow), ends the process. Triangles beyond that are left out by Embree, and those
+//! whose edges are so short that products of three underflow (some 1e-13) are not met.
 
 #![allow(
     unsafe_code,

@@ -1,7 +1,7 @@
 //! The pbrt-v4 scene format.
 //!
-//! Read in three steps: [`tokens`] cuts the text, [`directives`] reads the arguments of each directive and has the `Builder` carry
-//! it out (the parameters of each kind of entity have a file of their own), and [`finish`] resolves names and reads mesh files.
+//! Read in three steps: `tokens` cuts the text, `directives` reads the arguments of each directive and has the `Builder` carry
+//! it out (the parameters of each kind of entity have a file of their own), and `finish` resolves names and reads mesh files.
 //! Nothing recurses, so no input can exhaust the stack.
 //!
 //! Beyond pbrt-v4, whatever is unknown, has the wrong type or is given twice is an error, many of them in one run.

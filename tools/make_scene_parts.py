@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Writes scenes/parts/: the meshes and the lists of instances that the scenes share. They are committed; this says where they come
+from. Needs nothing but Python 3. The same Python gives the same bytes.
+
+    python3 tools/make_scene_parts.py
+"""
+
+import math
+import pathlib
+
+import plants
+from ply import Mesh, lathe, spline
+
+PARTS = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "parts"
+
+
+def goblet():
+    """A wine glass, 2.4 high, wall 0.03 thick: one closed surface around the glass."""
+    outside = spline([(0.0, 0.0), (0.35, 0.0), (0.68, 0.0), (0.71, 0.03)], 4)
+    outside += spline([(0.68, 0.06), (0.4, 0.1), (0.13, 0.2), (0.075, 0.5), (0.075, 0.85), (0.13, 1.03), (0.36, 1.16)], 5)[:-1]
+    outside += spline([(0.36, 1.16), (0.62, 1.42), (0.68, 1.7), (0.62, 2.05), (0.53, 2.385)], 6)
+    inside = spline([(0.515, 2.4), (0.5, 2.385), (0.588, 2.05), (0.647, 1.7), (0.59, 1.43), (0.34, 1.2), (0.12, 1.12), (0.0, 1.1)], 5)
+    return lathe(outside + inside, 64)
+
+
+def pawn():
+    """A chess pawn, 1.5 high."""
+    points = [
+        (0.0, 0.0), (0.3, 0.0), (0.46, 0.0), (0.5, 0.06), (0.48, 0.16), (0.4, 0.22), (0.4, 0.26), (0.36, 0.34), (0.25, 0.46),
+        (0.18, 0.66), (0.15, 0.86), (0.17, 0.93), (0.27, 0.96), (0.28, 1.0), (0.24, 1.03), (0.16, 1.05),
+    ]
+    neck = math.asin(0.13 / 0.26)
+    head = [(0.26 * math.sin(a), 1.27 - 0.26 * math.cos(a)) for a in (neck + (math.pi - neck) * k / 14 for k in range(15))]
+    return lathe(spline(points, 3) + head[:-1] + [(0.0, 1.53)], 48)
+
+
+def gem():
+    """A brilliant: an octagonal table, a crown of triangles, a girdle and a pavilion that ends in a point. Flat faces, around the
+    y axis, girdle of radius 1 at y = 0."""
+    mesh = Mesh()
+
+    def ring(radius, height, turn):
+        first = len(mesh.points)
+        for k in range(8):
+            angle = math.pi / 4 * (k + turn)
+            mesh.points.append((radius * math.cos(angle), height, -radius * math.sin(angle)))
+        return [first + k for k in range(8)]
+
+    def band(low, high):
+        """Triangles between two rings; the higher one is half a step ahead."""
+        for k in range(8):
+            n = (k + 1) % 8
+            mesh.triangles.append((low[k], low[n], high[k]))
+            mesh.triangles.append((low[n], high[n], high[k]))
+
+    table, crown = ring(0.56, 0.34, 0.5), ring(0.8, 0.19, 0.0)
+    girdle_high, girdle_low = ring(1.0, 0.02, 0.5), ring(1.0, -0.02, 0.5)
+    mesh.points.append((0.0, -0.86, 0.0))
+    tip = len(mesh.points) - 1
+    band(crown, table)
+    mesh.triangles += [(table[0], table[k], table[k + 1]) for k in range(1, 7)]
+    for k in range(8):
+        n, before = (k + 1) % 8, (k - 1) % 8
+        mesh.triangles.append((girdle_high[before], girdle_high[k], crown[k]))
+        mesh.triangles.append((girdle_high[k], crown[n], crown[k]))
+        mesh.triangles.append((girdle_low[k], girdle_low[n], girdle_high[n]))
+        mesh.triangles.append((girdle_low[k], girdle_high[n], girdle_high[k]))
+        mesh.triangles.append((tip, girdle_low[n], girdle_low[k]))
+    return mesh
+
+
+def backdrop():
+    """A photographer's paper sweep: floor y = 0 from z = -12, a quarter circle, a wall at z = 6 up to y = 12."""
+    profile = [(-12.0, 0.0, 0.0)] + [
+        (2.5 + 3.5 * math.sin(a), 3.5 - 3.5 * math.cos(a), a) for a in (math.pi / 2 * k / 24 for k in range(25))
+    ] + [(6.0, 12.0, math.pi / 2)]
+    mesh = Mesh()
+    for z, y, angle in profile:
+        for x in (-16.0, 16.0):
+            mesh.points.append((x, y, z))
+            mesh.normals.append((0.0, math.cos(angle), -math.sin(angle)))
+    for row in range(len(profile) - 1):
+        a = 2 * row
+        mesh.triangles += [(a, a + 2, a + 3), (a, a + 3, a + 1)]
+    return mesh
+
+
+def board(parity):
+    """Every second square of a board in the plane y = 0; squares of side 1.2."""
+    mesh = Mesh()
+    for i in range(-7, 12):
+        for j in range(-5, 12):
+            if (i + j) % 2 == parity:
+                corners = [(1.2 * x, 0.0, 1.2 * z) for x, z in ((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j))]
+                mesh.add(corners, [(0, 1, 2), (0, 2, 3)])
+    return mesh
+
+
+def vane():
+    """One curled sheet of a pinwheel in the plane z = 0, the hub at the origin, radius 1; 45 degrees wide."""
+    mesh = Mesh()
+    rows, columns = 12, 10
+    for i in range(rows + 1):
+        radius = 0.06 + 0.94 * i / rows
+        for j in range(columns + 1):
+            t = j / columns
+            angle = math.radians(52) * t * (0.35 + 0.65 * radius)
+            reach = radius * (1 - 0.28 * t * t)
+            lift = -0.34 * radius * math.sin(math.pi / 2 * t) ** 2 * (1.25 - 0.5 * radius)
+            mesh.points.append((reach * math.cos(angle), reach * math.sin(angle), lift))
+    for i in range(rows):
+        for j in range(columns):
+            a = i * (columns + 1) + j
+            b = a + columns + 1
+            mesh.triangles += [(a, b, b + 1), (a, b + 1, a + 1)]
+    return mesh
+
+
+def flag_text():
+    """A pennant that flutters: the vertices at the start and at the end of the motion, as text, for they are "P" and "P1"."""
+    rows, columns = 8, 28
+
+    def points(phase):
+        numbers = []
+        for i in range(rows + 1):
+            for j in range(columns + 1):
+                x = j / columns
+                height = (i / rows - 0.5) * (1 - 0.93 * x)
+                wave = 0.2 * math.sqrt(x) * math.sin(7.5 * x - phase)
+                drop = -0.1 * x * x
+                numbers.append(f"{1.9 * x:.3f} {height + drop + 0.8 * wave:.3f} {wave:.3f}")
+        return "\n        ".join("  ".join(numbers[k:k + 6]) for k in range(0, len(numbers), 6))
+
+    indices = []
+    for i in range(rows):
+        for j in range(columns):
+            a = i * (columns + 1) + j
+            b = a + columns + 1
+            indices.append(f"{a} {a + 1} {b + 1}  {a} {b + 1} {b}")
+    indices = "\n        ".join("   ".join(indices[k:k + 5]) for k in range(0, len(indices), 5))
+    return (
+        "# By tools/make_scene_parts.py. A pennant at a pole along y; it moves from P to P1.\n"
+        'Shape "trianglemesh"\n'
+        f'    "integer indices" [\n        {indices}\n    ]\n'
+        f'    "point3 P" [\n        {points(0.0)}\n    ]\n'
+        f'    "point3 P1" [\n        {points(1.1)}\n    ]\n'
+    )
+
+
+def main():
+    PARTS.mkdir(exist_ok=True)
+    meshes = {
+        "backdrop": backdrop(),
+        "board-dark": board(1),
+        "board-light": board(0),
+        "gem": gem(),
+        "goblet": goblet(),
+        "pawn": pawn(),
+        "vane": vane(),
+        **plants.meshes(),
+    }
+    for name, mesh in meshes.items():
+        path = PARTS / f"{name}.ply.gz"
+        mesh.write(path)
+        print(f"{path.name}: {len(mesh.triangles)} triangles, {path.stat().st_size} bytes")
+    for name, text in {"pennant": flag_text(), "forest": plants.forest_text()}.items():
+        path = PARTS / f"{name}.pbrt"
+        path.write_text(text)
+        print(f"{path.name}: {len(text)} bytes")
+
+
+main()
