@@ -202,10 +202,19 @@ impl Report {
 
     /// What breaks the rule, or `None`.
     pub fn problem(&self) -> Option<String> {
+        self.broken(self.inconclusive)
+    }
+
+    /// What breaks the rule apart from its first clause, for a comparison that has fewer samples than it would take to agree.
+    pub fn problem_but_precision(&self) -> Option<String> {
+        self.broken(0.0)
+    }
+
+    fn broken(&self, inconclusive: f64) -> Option<String> {
         let mean_ok = |d: &f64| d.abs() < self.mean_limit;
         let rules = [
             (
-                self.inconclusive <= 0.05,
+                inconclusive <= 0.05,
                 "inconclusive: ours is too noisy in more than 5 % of the blocks",
             ),
             (self.rms_z <= 1.25, "the root mean square of z is above 1.25"),

@@ -1,0 +1,316 @@
+//! BSDFs: samples against pdf by chi-squared; values against the pdf-free quadrature of the model; reciprocity.
+
+use glam::{DVec3, Vec2, Vec3};
+use lucerna::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction};
+use lucerna::material::{Bsdf, ConductorIor, Density, Ggx, Material, TransportMode};
+use lucerna::spectrum::{ColorMode, Spectrum, SpectrumRole, Wavelengths};
+
+use super::common::chi2::Chi2;
+use super::common::means::{FEWEST_RUNS, Means};
+use super::common::microfacet::{Slopes, conductor_reflectance, dielectric_reflectance, direction};
+use super::common::random::Random;
+use super::first_two;
+
+const RADIANCE: TransportMode = TransportMode::Radiance;
+const IMPORTANCE: TransportMode = TransportMode::Importance;
+const MODES: [TransportMode; 2] = [RADIANCE, IMPORTANCE];
+
+/// What is tested, with what the model is made of.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Diffuse,
+    /// Slopes.
+    Metal(f32, f32),
+    /// Index and slopes.
+    Glass(f32, f32, f32),
+}
+
+const METAL_N: f64 = 0.2;
+const METAL_K: f64 = 3.9;
+
+impl Kind {
+    /// The BSDF where the normal is +z and the tangent +x.
+    fn bsdf(self) -> Bsdf {
+        let compile = |value: f64, role| Spectrum::constant(value as f32).compile(ColorMode::Spectral, role);
+        let index = |value| compile(value, SpectrumRole::Reflectance);
+        let material = match self {
+            Self::Diffuse => Material::Diffuse {
+                reflectance: index(0.7),
+            },
+            Self::Metal(x, y) => Material::Conductor {
+                ior: ConductorIor::Measured {
+                    eta: index(METAL_N),
+                    k: index(METAL_K),
+                },
+                roughness: Ggx::new(x, y),
+            },
+            Self::Glass(eta, x, y) => Material::Dielectric {
+                eta: compile(eta.into(), SpectrumRole::Ior),
+                roughness: Ggx::new(x, y),
+            },
+        };
+        let upright = SurfaceInteraction {
+            p: Vec3::ZERO,
+            error: 0.0,
+            t: 1.0,
+            ng: Vec3::Z,
+            ns: Vec3::Z,
+            dpdu: Vec3::X,
+            uv: Vec2::ZERO,
+            time: 0.0,
+            hit: Hit {
+                geometry: GeometryId(0),
+                primitive: PrimitiveId(0),
+                instance: None,
+            },
+        };
+        material.bsdf(&upright, &mut Wavelengths::sample_visible(0.3))
+    }
+
+    /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
+    fn albedo(self, wo: DVec3, mode: TransportMode) -> f64 {
+        let up = DVec3::new(wo.x, wo.y, wo.z.abs());
+        match self {
+            Self::Diffuse => 0.7,
+            Self::Metal(x, y) => {
+                let fresnel = |cos| conductor_reflectance(cos, METAL_N, METAL_K);
+                Slopes(x.into(), y.into()).reflected(up, fresnel)
+            }
+            Self::Glass(eta, x, y) => {
+                let eta = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
+                let slopes = Slopes(x.into(), y.into());
+                let scale = if mode == RADIANCE { 1.0 / (eta * eta) } else { 1.0 };
+                let fresnel = |cos| dielectric_reflectance(cos, eta);
+                slopes.reflected(up, fresnel) + scale * slopes.transmitted(up, eta)
+            }
+        }
+    }
+}
+
+const KINDS: [Kind; 10] = [
+    Kind::Diffuse,
+    Kind::Metal(0.1, 0.1),
+    Kind::Metal(0.4, 0.4),
+    Kind::Metal(1.0, 1.0),
+    Kind::Metal(0.15, 0.5),
+    Kind::Glass(1.5, 0.1, 0.1),
+    Kind::Glass(1.5, 0.5, 0.5),
+    Kind::Glass(1.5, 0.2, 0.7),
+    Kind::Glass(0.75, 0.3, 0.3),
+    Kind::Glass(2.4, 0.9, 0.4),
+];
+
+/// Polar angle and azimuth of wo, in degrees, for both sides: from the normal to grazing.
+const DIRECTIONS: [(f64, f64); 6] = [
+    (0.0, 0.0),
+    (35.0, 70.0),
+    (65.0, 200.0),
+    (88.0, 20.0),
+    (140.0, 310.0),
+    (100.0, 45.0),
+];
+
+fn each_case() -> impl Iterator<Item = (Kind, DVec3, String)> {
+    KINDS.into_iter().flat_map(|kind| {
+        DIRECTIONS.into_iter().map(move |(theta, phi)| {
+            let name = format!("{kind:?} from {theta}, {phi}");
+            (kind, direction(theta, phi), name)
+        })
+    })
+}
+
+#[test]
+fn samples_have_the_density_of_pdf() {
+    for (kind, wo, name) in each_case() {
+        let (bsdf, wo) = (kind.bsdf(), wo.as_vec3());
+        let test = Chi2 {
+            samples: 200_000,
+            bins: [24, 24],
+            ..Chi2::sphere().of(KINDS.len() * DIRECTIONS.len())
+        };
+        let report = test.run_directions(
+            |u| {
+                let sample = bsdf.sample_f(wo, u[2], first_two(u), RADIANCE)?;
+                assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{name}");
+                Some(sample.wi)
+            },
+            |wi| bsdf.pdf(wo, wi, RADIANCE).0,
+        );
+        report.assert_ok(&name);
+        if matches!(kind, Kind::Diffuse) {
+            assert!((report.mass - 1.0).abs() < 1e-4, "{name}: {}", report.mass);
+        }
+    }
+}
+
+/// A pdf that is off by 2 % on one side is noticed with the budget of the test above.
+#[test]
+fn a_wrong_density_is_noticed() {
+    let (bsdf, wo) = (Kind::Glass(1.5, 0.5, 0.5).bsdf(), direction(35.0, 70.0).as_vec3());
+    let test = Chi2 {
+        samples: 200_000,
+        bins: [24, 24],
+        ..Chi2::sphere().of(KINDS.len() * DIRECTIONS.len())
+    };
+    let report = test.run_directions(
+        |u| Some(bsdf.sample_f(wo, u[2], first_two(u), RADIANCE)?.wi),
+        |wi| bsdf.pdf(wo, wi, RADIANCE).0 * if wi.z > 0.0 { 0.94 } else { 1.0 },
+    );
+    assert!(report.problem().is_some());
+}
+
+/// A sample's value and density are those that f and pdf give for its direction, in both modes.
+#[test]
+fn samples_agree_with_f_and_pdf() {
+    let mut random = Random::new(3);
+    for (kind, wo, name) in each_case() {
+        let (bsdf, wo) = (kind.bsdf(), wo.as_vec3());
+        for mode in MODES {
+            for _ in 0..200 {
+                let u = random.unit4();
+                let Some(sample) = bsdf.sample_f(wo, u[2], first_two(u), mode) else {
+                    continue;
+                };
+                let Density::Continuous(pdf) = sample.density else {
+                    panic!("{name}: a delta sample of a rough surface");
+                };
+                let (f, expected) = (bsdf.f(wo, sample.wi, mode).0[0], sample.value.0[0]);
+                // At a narrow peak, single precision loses digits of the half vector: by 1 / alpha².
+                let close = |a: f32, b: f32| (a - b).abs() <= 5e-3 * b.max(1e-4);
+                assert!(close(f, expected), "{name}, {mode:?}: f {f}, sampled {expected}");
+                let again = bsdf.pdf(wo, sample.wi, mode).0;
+                assert!(close(again, pdf.0), "{name}, {mode:?}: pdf {again}, sampled {}", pdf.0);
+                assert!((bsdf.abs_cos(sample.wi) - sample.cos_theta).abs() < 1e-5, "{name}");
+                let expected_eta = match kind {
+                    Kind::Glass(eta, ..) if sample.wi.z * wo.z < 0.0 => {
+                        if wo.z > 0.0 {
+                            eta
+                        } else {
+                            1.0 / eta
+                        }
+                    }
+                    _ => 1.0,
+                };
+                assert_eq!(sample.eta, expected_eta, "{name}");
+            }
+        }
+    }
+}
+
+/// The mean of f cos / pdf is the albedo of the model, without any of its Jacobians, and never above 1 for importance.
+#[test]
+fn weights_average_to_the_albedo_of_the_model() {
+    const SAMPLES: usize = 8192;
+    let means = Means {
+        significance: 0.01 / (KINDS.len() * DIRECTIONS.len() * MODES.len()) as f64,
+        slack: 1e-3,
+    };
+    for (kind, wo, name) in each_case() {
+        let bsdf = kind.bsdf();
+        for mode in MODES {
+            let run = |seed: usize| {
+                let mut random = Random::new(seed as u64);
+                let weights = (0..SAMPLES).map(|_| {
+                    let u = random.unit4();
+                    let sample = bsdf.sample_f(wo.as_vec3(), u[2], first_two(u), mode);
+                    sample.map_or(0.0, |s| f64::from(s.weight().0[0]))
+                });
+                vec![weights.sum::<f64>() / SAMPLES as f64]
+            };
+            let runs: Vec<_> = (1..=FEWEST_RUNS).map(run).collect();
+            let albedo = kind.albedo(wo, mode);
+            let name = format!("{name}, {mode:?}");
+            let report = means.against_exact(&runs, &[albedo]);
+            report.assert_agrees(&name);
+            report.assert_power(&name, 0.03, 0.03);
+            assert!(!means.against_exact(&runs, &[1.03 * albedo]).agrees(), "{name}");
+            if mode == IMPORTANCE {
+                assert!(albedo <= 1.0 + 1e-4, "{name}: {albedo}");
+            }
+        }
+    }
+}
+
+/// f(wo, wi) / n² is symmetric for radiance, where n is the index on the side of the first; importance is the other way round.
+#[test]
+fn scattering_is_reciprocal() {
+    let mut random = Random::new(7);
+    let mut compared = 0;
+    for kind in KINDS {
+        let bsdf = kind.bsdf();
+        let index = |w: Vec3| match kind {
+            Kind::Glass(eta, ..) if w.z < 0.0 => eta,
+            _ => 1.0,
+        };
+        for _ in 0..2000 {
+            let [a, b] = [(); 2].map(|()| {
+                let z = 2.0 * f64::from(random.unit()) - 1.0;
+                direction(z.acos().to_degrees(), 360.0 * f64::from(random.unit())).as_vec3()
+            });
+            let forth = bsdf.f(a, b, RADIANCE).0[0] * index(b).powi(2);
+            let back = bsdf.f(b, a, RADIANCE).0[0] * index(a).powi(2);
+            let close = |x: f32, y: f32| (x - y).abs() <= 2e-4 * x.max(y) + 1e-9;
+            assert!(close(forth, back), "{kind:?}, {a} and {b}: {forth} and {back}");
+            let (radiance, adjoint) = (bsdf.f(a, b, RADIANCE).0[0], bsdf.f(b, a, IMPORTANCE).0[0]);
+            assert!(
+                close(radiance, adjoint),
+                "{kind:?}, {a} and {b}: {radiance} and {adjoint}"
+            );
+            compared += usize::from(forth > 0.0);
+        }
+    }
+    assert!(compared > 5000, "only {compared} pairs scatter");
+}
+
+/// Delta lobes: their coefficients over their probabilities leave what Fresnel's equations say, and add up to 1.
+#[test]
+fn smooth_surfaces_keep_their_energy() {
+    let mut random = Random::new(9);
+    for (eta, (theta, phi)) in [1.5_f32, 0.75, 2.4]
+        .into_iter()
+        .flat_map(|e| DIRECTIONS.map(|d| (e, d)))
+    {
+        let bsdf = Kind::Glass(eta, 0.0, 0.0).bsdf();
+        assert!(bsdf.is_delta());
+        let wo = direction(theta, phi).as_vec3();
+        let across = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
+        let reflectance = dielectric_reflectance(f64::from(wo.z.abs()), across);
+        let (mut reflected, mut transmitted) = (None, None);
+        for _ in 0..400 {
+            let u = random.unit4();
+            let sample = bsdf
+                .sample_f(wo, u[2], first_two(u), IMPORTANCE)
+                .expect("no light is lost");
+            let Density::Delta(probability) = sample.density else {
+                panic!("a smooth surface has delta lobes");
+            };
+            assert!((sample.weight().0[0] - 1.0).abs() < 1e-5);
+            assert_eq!(bsdf.f(wo, sample.wi, RADIANCE).0[0], 0.0);
+            assert_eq!(bsdf.pdf(wo, sample.wi, RADIANCE).0, 0.0);
+            let seen = if sample.wi.z * wo.z > 0.0 {
+                &mut reflected
+            } else {
+                // Snell's law.
+                let sin = |w: Vec3| f64::from(w.truncate().length());
+                assert!((sin(wo) - across * sin(sample.wi)).abs() < 1e-5);
+                &mut transmitted
+            };
+            *seen = Some(f64::from(probability));
+        }
+        let name = format!("eta {eta} from {theta}");
+        if reflectance > 0.02 {
+            assert!(
+                (reflected.expect("some are reflected") - reflectance).abs() < 1e-5,
+                "{name}"
+            );
+        }
+        if reflectance < 0.98 {
+            assert!(
+                (transmitted.expect("some are transmitted") - (1.0 - reflectance)).abs() < 1e-5,
+                "{name}"
+            );
+        } else {
+            assert!(reflectance < 1.0 || transmitted.is_none(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! What is sampled against the density it claims: BSDFs, lights, the choice of a light, cameras, pixel filters.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bsdfs;
+mod cameras;
+mod lights;
+
+use glam::Vec2;
+
+/// The first two of four random numbers.
+fn first_two(u: [f32; 4]) -> Vec2 {
+    Vec2::new(u[0], u[1])
+}
