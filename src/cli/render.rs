@@ -57,6 +57,7 @@ impl<'a> Job<'a> {
         if let Some(output) = &args.output {
             ImageFormat::of_path(output)?;
             let template = output.to_string_lossy();
+            check_placeholders(&template)?;
             if args.scenes.len() > 1 && !template.contains("{scene}") {
                 return Err(Error::Usage(format!(
                     "{template}: several scenes cannot be written to one file; put {{scene}} into its name"
@@ -162,6 +163,17 @@ impl<'a> Job<'a> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
+        if scene.lights().is_empty() {
+            Reporter {
+                channel: self.channel,
+                scene: path,
+                camera: "",
+            }
+            .say(&format!(
+                "warning: {} has no lights: its picture is black",
+                path.display()
+            ));
+        }
         Ok((
             Prepared {
                 scene,
@@ -298,6 +310,17 @@ impl<'a> Job<'a> {
             (self.print_error)(&error);
             self.exit_code = self.exit_code.max(error.exit_code());
         }
+    }
+}
+
+/// Checks that only `{scene}` and `{camera}` stand in a name.
+fn check_placeholders(template: &str) -> Result<()> {
+    let known = template.replace("{scene}", "").replace("{camera}", "");
+    match known.split_once('{').and_then(|(_, rest)| rest.split_once('}')) {
+        Some((name, _)) => Err(Error::Usage(format!(
+            "{template}: unknown placeholder {{{name}}}: expected {{scene}} or {{camera}}"
+        ))),
+        None => Ok(()),
     }
 }
 

@@ -73,7 +73,12 @@ impl PendingOutput {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(failed(error)),
         }
-        temporary_in(directory_of(&target)).map_err(failed)?;
+        let directory = directory_of(&target);
+        if !directory.is_dir() {
+            let missing = format!("there is no directory {}", directory.display());
+            return Err(failed(io::Error::new(io::ErrorKind::NotFound, missing)));
+        }
+        temporary_in(directory).map_err(failed)?;
         Ok(Self {
             path: path.to_owned(),
             target,

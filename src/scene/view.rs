@@ -64,7 +64,7 @@ impl View {
         if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 || crop.x1 > resolution[0] || crop.y1 > resolution[1] {
             let [width, height] = resolution;
             return Err(Error::Usage(format!(
-                "crop {},{},{},{} is empty or reaches beyond the picture of {width}x{height} pixels",
+                "the pixels {},{} to {},{} (exclusive) are not all in the picture of {width}x{height}",
                 crop.x0, crop.y0, crop.x1, crop.y1
             )));
         }
