@@ -33,7 +33,7 @@ fn covered(window: [f64; 4], x: [f64; 2], y: [f64; 2]) -> Vec<f64> {
 }
 
 /// Edges leave pixels that are partly covered: a block is a pixel, and an eighth of one is noticed.
-const EDGES: Judge = Judge { power: (0.13, 0.01) };
+const EDGES: Judge = Judge { power: (0.13, 0.005) };
 
 #[test]
 fn a_perspective_camera_sees_what_its_angle_says() {

@@ -66,10 +66,11 @@ fn a_smooth_boundary_reflects_as_fresnel_says() {
         "{WHITE_SKY}\nAttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n{}AttributeEnd",
         quad([-80.0, -80.0, Z - 0.5], [160.0, 0.0, 0.0], [0.0, 160.0, 0.0])
     );
-    for theta in [20.0, 60.0, 80.0] {
+    // The less is reflected, the more samples it takes.
+    for (theta, spp) in [(20.0, 4096), (60.0, 2048), (80.0, 512)] {
         let cos = direction(theta, 0.0).z;
         let text = plane(theta, 25.0, 4, &black_ground, "\"dielectric\" \"float eta\" 1.5");
-        check_uniform(&format!("glass at {theta}"), &text, 4096, |_| {
+        check_uniform(&format!("glass at {theta}"), &text, spp, |_| {
             [dielectric_reflectance(cos, 1.5); 3]
         });
         let gold = "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"";

@@ -11,7 +11,7 @@ const SIDE: f64 = 2.0;
 /// Blocks of 2 x 2 pixels.
 const BLOCKS: usize = 4;
 /// A block that is dark for most of the exposure is noisy.
-const JUDGE: Judge = Judge { power: (0.1, 0.01) };
+const JUDGE: Judge = Judge { power: (0.1, 0.005) };
 
 /// A scene under a white sky, seen by parallel rays along +z (x to the right, y up); `shutter` is in scene time.
 fn scene(before: &str, shutter: [f64; 2], world: &str) -> String {

@@ -121,15 +121,15 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// 5 % of one block, 1 % of the whole.
-    pub const USUAL: Self = Self { power: (0.05, 0.01) };
+    /// 5 % of one block, half a percent of the whole.
+    pub const USUAL: Self = Self { power: (0.05, 0.005) };
     const MEANS: Means = Means {
         significance: 0.01,
         slack: 1e-3,
     };
 
     /// Panics unless the runs agree with what is expected of each block, have the power, and would not agree with an
-    /// expectation that is wrong by that power: 1 % everywhere, either way, or 5 % in one block. Where black is expected of all,
+    /// expectation that is wrong by that much, everywhere (either way) or in one block. Where black is expected of all,
     /// it must be black to the last bit.
     #[track_caller]
     pub fn assert_agrees(&self, name: &str, runs: &[Vec<f64>], expected: &[f64]) -> MeansReport {
