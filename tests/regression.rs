@@ -2,9 +2,14 @@
 
 mod common;
 
+use common::random::Random;
 use common::render::{Built, combinations, parse};
+use lucerna::light::{AreaLight, EmitterShape, Light};
 use lucerna::material::fresnel_complex;
+use lucerna::math::{DVec3, Vec2};
+use lucerna::sampling::warp;
 use lucerna::scene::ViewOverrides;
+use lucerna::spectrum::{ColorMode, Spectrum, SpectrumRole, Wavelengths};
 
 /// Planes through the coordinate origin were black: the offset of a ray that leaves a surface was relative to the position, so
 /// there it was 0 and the ray met its own plane again.
@@ -64,4 +69,54 @@ fn along(parts: &[(&str, f32)]) -> String {
 #[test]
 fn metals_reflect_a_finite_part_in_the_unused_lane_of_rgb_mode() {
     assert!(fresnel_complex(1.0, 0.0, 0.0).is_finite());
+}
+
+/// Points on a sphere that emits inward, rounded to single precision, seemed to be outside of it half of the time, and then
+/// sampled a cone of directions that had no light: a closed sphere of emission 1 and albedo 1/2 had the radiance 1.8, not 2.
+#[test]
+fn points_on_an_inward_sphere_light_sample_all_of_it() {
+    let center = DVec3::new(0.3, -0.4, 0.5);
+    let shape = EmitterShape::Sphere {
+        center,
+        radius: 2.0,
+        inward: true,
+    };
+    let radiance = Spectrum::constant(1.0).compile(ColorMode::Rgb, SpectrumRole::Emission);
+    let light = Light::Area(AreaLight::new(shape, radiance, false).expect("a sphere has an area"));
+    let mut random = Random::new(5);
+    for _ in 0..1000 {
+        let [a, b, c, d] = random.unit4();
+        let on_sphere = center + 2.0 * warp::sample_uniform_sphere(Vec2::new(a, b)).as_dvec3().normalize();
+        let sample = light.sample_li(on_sphere.as_vec3(), Vec2::new(c, d), &Wavelengths::rgb());
+        assert!(sample.is_some(), "from {on_sphere}");
+    }
+}
+
+/// Shadow rays ended a ten-thousandth of their length before the lamp, and light came through what stands closer before it: in
+/// smallpt through the edge of the ceiling, which made the picture 0.8 % too bright.
+#[test]
+fn a_lamp_close_behind_a_screen_is_dark() {
+    let quad = |z: f32, half: f32, turn: &str| {
+        format!(
+            "Shape \"trianglemesh\" \"integer indices\" [ {turn} ] \"point3 P\" [ -{half} -{half} {z}  {half} -{half} {z}  \
+             {half} {half} {z}  -{half} {half} {z} ]\n"
+        )
+    };
+    let (down, up) = ("0 2 1 0 3 2", "0 1 2 0 2 3");
+    let sphere = "Translate 0 0 300.003\nShape \"sphere\" \"float radius\" 200\n".to_owned();
+    for lamp in [quad(100.003, 100.0, down), sphere] {
+        let text = format!(
+            "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"orthographic\"\n\
+             Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n\
+             Sampler \"sobol\" \"integer pixelsamples\" 64 Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n{}{}\
+             AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n{lamp}",
+            quad(0.0, 5.0, up),
+            quad(100.0, 500.0, down),
+        );
+        for (backend, color) in combinations() {
+            let built = Built::new(parse(&text), backend, color);
+            let picture = built.picture(&built.view(0, &ViewOverrides::default()));
+            assert!(picture.iter().all(|&v| v == 0.0), "{backend}, {color:?}, {lamp}");
+        }
+    }
 }

@@ -90,19 +90,25 @@ impl Chi2 {
         pdf: impl Fn([f64; 2]) -> f64,
     ) -> Chi2Report {
         let [columns, rows] = self.bins;
+        let mut expected: Vec<f64> = (0..columns * rows)
+            .map(|cell| self.samples as f64 * self.integrate(&pdf, self.bounds(cell), 0))
+            .collect();
         let mut random = Random::new(self.seed);
         let mut observed = vec![0_usize; columns * rows];
         let (mut failed, mut outside) = (0_usize, 0);
         for _ in 0..self.samples {
-            match sample(random.unit4()).map(|p| self.cell(p)) {
+            match sample(random.unit4()).map(|p| (p, self.cell(p))) {
                 None => failed += 1,
-                Some(None) => outside += 1,
-                Some(Some(cell)) => observed[cell] += 1,
+                Some((_, None)) => outside += 1,
+                Some((point, Some(cell))) => {
+                    observed[cell] += 1;
+                    // The quadrature may miss a corner where the density is positive.
+                    if expected[cell] == 0.0 && pdf(point) > 0.0 {
+                        expected[cell] = f64::MIN_POSITIVE;
+                    }
+                }
             }
         }
-        let expected: Vec<f64> = (0..columns * rows)
-            .map(|cell| self.samples as f64 * self.integrate(&pdf, self.bounds(cell), 0))
-            .collect();
         let mass = expected.iter().sum::<f64>() / self.samples as f64;
         let mut cells: Vec<(String, f64, f64)> = (0..columns * rows)
             .map(|i| (format!("{:.4?}", self.bounds(i)), observed[i] as f64, expected[i]))

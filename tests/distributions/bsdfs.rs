@@ -143,7 +143,7 @@ fn samples_have_the_density_of_pdf() {
     }
 }
 
-/// A pdf that is off by 2 % on one side is noticed with the budget of the test above.
+/// A pdf that is off by 4 % on one side is noticed with the budget of the test above.
 #[test]
 fn a_wrong_density_is_noticed() {
     let (bsdf, wo) = (Kind::Glass(1.5, 0.5, 0.5).bsdf(), direction(35.0, 70.0).as_vec3());
@@ -154,7 +154,7 @@ fn a_wrong_density_is_noticed() {
     };
     let report = test.run_directions(
         |u| Some(bsdf.sample_f(wo, u[2], first_two(u), RADIANCE)?.wi),
-        |wi| bsdf.pdf(wo, wi, RADIANCE).0 * if wi.z > 0.0 { 0.94 } else { 1.0 },
+        |wi| bsdf.pdf(wo, wi, RADIANCE).0 * if wi.z < 0.0 { 0.96 } else { 1.0 },
     );
     assert!(report.problem().is_some());
 }
@@ -200,7 +200,7 @@ fn samples_agree_with_f_and_pdf() {
 /// The mean of f cos / pdf is the albedo of the model, without any of its Jacobians, and never above 1 for importance.
 #[test]
 fn weights_average_to_the_albedo_of_the_model() {
-    const SAMPLES: usize = 8192;
+    const SAMPLES: usize = 32_768;
     let means = Means {
         significance: 0.01 / (KINDS.len() * DIRECTIONS.len() * MODES.len()) as f64,
         slack: 1e-3,
@@ -249,7 +249,12 @@ fn scattering_is_reciprocal() {
             });
             let forth = bsdf.f(a, b, RADIANCE).0[0] * index(b).powi(2);
             let back = bsdf.f(b, a, RADIANCE).0[0] * index(a).powi(2);
-            let close = |x: f32, y: f32| (x - y).abs() <= 2e-4 * x.max(y) + 1e-9;
+            // The half vector is off by some 1e-7, its slope over alpha of 0.1 by a hundred times that. Where a facet is met at a
+            // flat angle on one side, the cosine on the other is a square root that loses its digits.
+            let m = (a * index(a) + b * index(b)).normalize();
+            let flattest = a.dot(m).abs().min(b.dot(m).abs());
+            let tolerance = 1e-3 + 1e-6 / (flattest * flattest);
+            let close = |x: f32, y: f32| (x - y).abs() <= tolerance * x.max(y) + 1e-9;
             assert!(close(forth, back), "{kind:?}, {a} and {b}: {forth} and {back}");
             let (radiance, adjoint) = (bsdf.f(a, b, RADIANCE).0[0], bsdf.f(b, a, IMPORTANCE).0[0]);
             assert!(

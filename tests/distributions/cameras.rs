@@ -151,7 +151,7 @@ fn filter_samples_have_the_filters_shares() {
     ];
     for (kind, radius) in kinds {
         let filter = PixelFilter::new(kind, radius).expect("a filter");
-        assert_eq!(filter.radius().to_array().map(f64::from), radius);
+        assert_eq!(filter.radius().to_array(), radius.map(|r| r as f32));
         // Of each axis: the integral over a cell, by the midpoint rule.
         let shares = |axis: usize| {
             let r = radius[axis];
@@ -185,17 +185,24 @@ fn filter_samples_have_the_filters_shares() {
             slack: 1e-3,
             significance: 0.01 / 6.0,
         };
+        // Where next to nothing is expected, sixteen runs without a sample say nothing.
+        let kept = |values: &[f64]| -> Vec<f64> {
+            let pairs = values.iter().zip(&expected);
+            pairs.filter(|(_, e)| e.abs() > 1e-4).map(|(v, _)| *v).collect()
+        };
+        let total: f64 = runs.iter().flatten().sum::<f64>() / FEWEST_RUNS as f64;
+        let runs: Vec<_> = runs.iter().map(|run| kept(run)).collect();
+        let expected = kept(&expected);
         means
             .against_exact(&runs, &expected)
             .assert_agrees(&format!("{kind:?}"));
         // The weights average to 1, so that an even picture stays as bright as it is.
-        let total: f64 = runs.iter().flatten().sum::<f64>() / FEWEST_RUNS as f64;
         assert!((total - 1.0).abs() < 5e-3, "{kind:?}: {total}");
-        // Another filter is told apart.
+        // A filter that is 15 % lower in its highest cell is told apart.
+        let highest = expected.iter().copied().fold(0.0, f64::max);
         let other: Vec<f64> = expected
             .iter()
-            .enumerate()
-            .map(|(i, e)| if i == 55 { 1.15 * e } else { *e })
+            .map(|&e| if e == highest { 0.85 * e } else { e })
             .collect();
         assert!(!means.against_exact(&runs, &other).agrees(), "{kind:?}");
     }
