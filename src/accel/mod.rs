@@ -66,13 +66,13 @@ pub trait HitFilter: Sync {
 /// [valid](crate::geometry::Ray::is_valid). Where two primitives are met at the same distance either may be reported; our own
 /// backends report the least (geometry, primitive, instance).
 pub trait Accel: Send + Sync {
-    /// Finds the nearest hit of each ray in [tnear, tfar]; `hits[i]` belongs to `rays[i]`.
+    /// Finds the nearest hit of each ray in (tnear, tfar]; `hits[i]` belongs to `rays[i]`. (Embree counts a hit at tnear itself.)
     ///
     /// # Panics
     /// If the slices differ in length.
     fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>);
 
-    /// Sets `tfar` to negative infinity in each lane that hits anything in [tnear, tfar]; all else stays.
+    /// Sets `tfar` to negative infinity in each lane that hits anything in (tnear, tfar]; all else stays.
     fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>);
 
     /// Whether the answer for a ray of this kind does not depend on the other rays of its packet or call, to the last bit.

@@ -150,8 +150,8 @@ fn to_world(
     // A distance from a plane shrinks as its normal, transformed, grows.
     let shrink = ng.length().recip();
     let (forward, backward) = (world_from_object.matrix3.abs(), object_from_world.matrix3.abs());
-    // Embree interpolates rotations nearly: its matrices are off by up to 2.1e-6 (35 u) at half a turn.
-    let g = f64::from(gamma(if is_static { 4 } else { 36 }));
+    // Embree interpolates rotations nearly: its matrices, and again their inverses, are off by up to 2.1e-6 (35 u) at half a turn.
+    let g = f64::from(gamma(if is_static { 4 } else { 72 }));
     let object_error = g * (backward * p.abs() + object_from_world.translation.abs());
     let world_error = g * (forward * local.p.abs() + world_from_object.translation.abs());
     LocalSurface {

@@ -231,7 +231,7 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
         ("needles", of_mesh(needles)),
         ("huge", of_mesh(huge)),
         ("far", of_mesh(far)),
-        ("tiny", of_mesh(mapped(&bumpy_ball(2), |p| p * 1e-9))),
+        ("tiny", of_mesh(mapped(&bumpy_ball(2), |p| p * 1e-6))),
         ("moving soup", of_mesh(soup_moves)),
         ("moving ball of four steps", of_mesh(ball_moves)),
         ("moving, fixed and spheres", of_shapes(both_move)),
