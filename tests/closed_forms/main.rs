@@ -1,5 +1,6 @@
 //! Pictures whose radiance is known in closed form, or as the quadrature of a model written down a second time, on every
-//! backend and in both colour modes. Every comparison also proves that it would notice an error (see `common::render::Judge`).
+//! backend and in both colour modes. Every comparison also proves that it would notice an error (see `common::render::Judge`). The
+//! full tier has eight times as many samples.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -11,6 +12,7 @@ mod interfaces;
 mod irradiance;
 mod motion;
 
+use common::effort;
 use common::render::{Built, Judge, combinations, parse};
 use lucerna::spectrum::ColorMode;
 
@@ -20,7 +22,7 @@ use lucerna::spectrum::ColorMode;
 fn check(name: &str, text: &str, spp: u32, block: [usize; 2], judge: &Judge, expected: impl Fn(ColorMode) -> Vec<f64>) {
     let desc = parse(text);
     for (backend, mode) in combinations() {
-        let runs = Built::new(desc.clone(), backend, mode).runs(spp, block);
+        let runs = Built::new(desc.clone(), backend, mode).runs(spp * effort(8) as u32, block);
         let name = format!("{name}, {backend}, {mode:?}");
         let report = judge.assert_agrees(&name, &runs, &expected(mode));
         println!("{name}: {report}");

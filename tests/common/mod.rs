@@ -22,6 +22,11 @@ pub fn full_tier() -> bool {
     std::env::var_os("LUCERNA_TEST_TIER").is_some_and(|tier| tier == "full")
 }
 
+/// How many times as many samples are drawn in this tier: `full` times in the full one.
+pub fn effort(full: usize) -> usize {
+    if full_tier() { full } else { 1 }
+}
+
 /// Whether test `index` belongs to the shard K/N that is asked for; all do if none is.
 pub fn in_shard(index: usize) -> bool {
     let Ok(shard) = std::env::var("LUCERNA_TEST_SHARD") else {

@@ -1,11 +1,12 @@
 //! BSDFs: samples against pdf by chi-squared; values against the pdf-free quadrature of the model; reciprocity.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Quat, Vec2, Vec3};
 use lucerna::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction};
 use lucerna::material::{Bsdf, ConductorIor, Density, Ggx, Material, TransportMode};
 use lucerna::spectrum::{ColorMode, Spectrum, SpectrumRole, Wavelengths};
 
 use super::common::chi2::Chi2;
+use super::common::effort;
 use super::common::means::{FEWEST_RUNS, Means};
 use super::common::microfacet::{Slopes, conductor_reflectance, dielectric_reflectance, direction};
 use super::common::random::Random;
@@ -31,6 +32,11 @@ const METAL_K: f64 = 3.9;
 impl Kind {
     /// The BSDF where the normal is +z and the tangent +x.
     fn bsdf(self) -> Bsdf {
+        self.bsdf_in(Vec3::Z, Vec3::X)
+    }
+
+    /// The BSDF for a normal and a derivative of the position, which need not be perpendicular or of unit length.
+    fn bsdf_in(self, ns: Vec3, dpdu: Vec3) -> Bsdf {
         let compile = |value: f64, role| Spectrum::constant(value as f32).compile(ColorMode::Spectral, role);
         let index = |value| compile(value, SpectrumRole::Reflectance);
         let material = match self {
@@ -49,13 +55,13 @@ impl Kind {
                 roughness: Ggx::new(x, y),
             },
         };
-        let upright = SurfaceInteraction {
+        let surface = SurfaceInteraction {
             p: Vec3::ZERO,
             error: 0.0,
             t: 1.0,
-            ng: Vec3::Z,
-            ns: Vec3::Z,
-            dpdu: Vec3::X,
+            ng: ns,
+            ns,
+            dpdu,
             uv: Vec2::ZERO,
             time: 0.0,
             hit: Hit {
@@ -64,7 +70,7 @@ impl Kind {
                 instance: None,
             },
         };
-        material.bsdf(&upright, &mut Wavelengths::sample_visible(0.3))
+        material.bsdf(&surface, &mut Wavelengths::sample_visible(0.3))
     }
 
     /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
@@ -124,7 +130,7 @@ fn samples_have_the_density_of_pdf() {
     for (kind, wo, name) in each_case() {
         let (bsdf, wo) = (kind.bsdf(), wo.as_vec3());
         let test = Chi2 {
-            samples: 200_000,
+            samples: 200_000 * effort(10),
             bins: [24, 24],
             ..Chi2::sphere().of(KINDS.len() * DIRECTIONS.len())
         };
@@ -148,7 +154,7 @@ fn samples_have_the_density_of_pdf() {
 fn a_wrong_density_is_noticed() {
     let (bsdf, wo) = (Kind::Glass(1.5, 0.5, 0.5).bsdf(), direction(35.0, 70.0).as_vec3());
     let test = Chi2 {
-        samples: 200_000,
+        samples: 200_000 * effort(10),
         bins: [24, 24],
         ..Chi2::sphere().of(KINDS.len() * DIRECTIONS.len())
     };
@@ -200,7 +206,7 @@ fn samples_agree_with_f_and_pdf() {
 /// The mean of f cos / pdf is the albedo of the model, without any of its Jacobians, and never above 1 for importance.
 #[test]
 fn weights_average_to_the_albedo_of_the_model() {
-    const SAMPLES: usize = 32_768;
+    let samples = 32_768 * effort(16);
     let means = Means {
         significance: 0.01 / (KINDS.len() * DIRECTIONS.len() * MODES.len()) as f64,
         slack: 1e-3,
@@ -210,12 +216,12 @@ fn weights_average_to_the_albedo_of_the_model() {
         for mode in MODES {
             let run = |seed: usize| {
                 let mut random = Random::new(seed as u64);
-                let weights = (0..SAMPLES).map(|_| {
+                let weights = (0..samples).map(|_| {
                     let u = random.unit4();
                     let sample = bsdf.sample_f(wo.as_vec3(), u[2], first_two(u), mode);
                     sample.map_or(0.0, |s| f64::from(s.weight().0[0]))
                 });
-                vec![weights.sum::<f64>() / SAMPLES as f64]
+                vec![weights.sum::<f64>() / samples as f64]
             };
             let runs: Vec<_> = (1..=FEWEST_RUNS).map(run).collect();
             let albedo = kind.albedo(wo, mode);
@@ -265,6 +271,31 @@ fn scattering_is_reciprocal() {
         }
     }
     assert!(compared > 5000, "only {compared} pairs scatter");
+}
+
+/// A surface that is turned scatters as the upright one does, turned: the tangent is what the derivative leaves along the surface.
+#[test]
+fn scattering_turns_with_the_surface() {
+    let turn = Quat::from_axis_angle(Vec3::new(2.0, -1.0, 2.0) / 3.0, 1.1);
+    let mut random = Random::new(13);
+    for (kind, wo, name) in each_case() {
+        let upright = kind.bsdf();
+        let turned = kind.bsdf_in(turn * Vec3::Z, turn * Vec3::new(3.0, 0.0, 0.7));
+        let wo = wo.as_vec3();
+        for _ in 0..50 {
+            let u = random.unit4();
+            let Some(sample) = upright.sample_f(wo, u[2], first_two(u), RADIANCE) else {
+                continue;
+            };
+            // As in `samples_agree_with_f_and_pdf`.
+            let close = |a: f32, b: f32| (a - b).abs() <= 5e-3 * a.max(b).max(1e-4);
+            let values = |bsdf: &Bsdf, o: Vec3, i: Vec3| (bsdf.f(o, i, RADIANCE).0[0], bsdf.pdf(o, i, RADIANCE).0);
+            let (f, pdf) = values(&upright, wo, sample.wi);
+            let (f_turned, pdf_turned) = values(&turned, turn * wo, turn * sample.wi);
+            assert!(close(f, f_turned), "{name}: {f} and {f_turned}");
+            assert!(close(pdf, pdf_turned), "{name}: {pdf} and {pdf_turned}");
+        }
+    }
 }
 
 /// Delta lobes: their coefficients over their probabilities leave what Fresnel's equations say, and add up to 1.
