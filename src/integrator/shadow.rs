@@ -5,25 +5,14 @@ use std::time::{Duration, Instant};
 use crate::accel::{Accel, RayKind};
 use crate::geometry::{LANES, Ray, RayPacket, SurfaceInteraction};
 use crate::light::LightEnd;
-use crate::math::{Vec3, gamma};
+use crate::math::Vec3;
 use crate::spectrum::SampledSpectrum;
-
-/// How much of a shadow ray is left out at its far end: some units in the last place. More would let light through what stands
-/// close before the lamp: pbrt's 1e-4 made smallpt, whose lamp is cut off by the ceiling at a flat angle, 0.8 % too bright.
-const FAR_GAP: f32 = 1e-6;
 
 /// The ray from `si` in direction `wi` to where a light was sampled. It ends just before the light's own surface.
 #[inline]
 pub(super) fn shadow_ray(si: &SurfaceInteraction, wi: Vec3, end: LightEnd) -> Ray {
     match end {
-        LightEnd::Point { p, error, ng } => {
-            // Seen from afar, the direction's rounding and the backend's add to the light's error, in proportion to the distance.
-            let from_afar = gamma(32) * ng.abs().dot((p - si.p).abs());
-            Ray {
-                tfar: 1.0 - FAR_GAP,
-                ..si.spawn_ray_to(p, error + from_afar, ng)
-            }
-        }
+        LightEnd::Point { p, error, ng } => si.spawn_ray_to(p, error, ng),
         LightEnd::Infinity => si.spawn_ray(wi),
     }
 }
