@@ -2,11 +2,11 @@
 //! (Veach 1997, section 9.2.4), and Russian roulette on the throughput.
 
 use super::shadow::shadow_ray;
-use super::wave::{FIRST_PATH_GROUP, Lane, Origin, Slot, Stage};
-use crate::geometry::{Hit, Ray, SurfaceInteraction};
+use super::wave::{EventNumbers, Lane, Origin, Slot, Stage};
+use crate::geometry::{Ray, SurfaceInteraction};
 use crate::light::LightDensity;
 use crate::material::{Bsdf, Density, TransportMode};
-use crate::math::{Vec2, Vec3};
+use crate::math::Vec3;
 use crate::sampling::power_heuristic;
 use crate::spectrum::SampledSpectrum;
 
@@ -22,35 +22,31 @@ const LAST_SURVIVAL_DEPTH: u32 = 64;
 const LAST_SURVIVAL: f32 = 0.95;
 
 impl PathIntegrator {
-    /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray.
+    /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray. `wo` is the
+    /// reversed direction of its ray.
     #[inline]
-    pub(super) fn shade(&self, stage: &mut Stage, lane: &Lane, ray: &Ray, hit: Option<Hit>) -> Option<(Lane, Ray)> {
-        let Some(hit) = hit else {
+    pub(super) fn shade(
+        &self,
+        stage: &mut Stage,
+        lane: &Lane,
+        surface: Option<&SurfaceInteraction>,
+        wo: Vec3,
+        numbers: &EventNumbers,
+    ) -> Option<(Lane, Ray)> {
+        let Some(si) = surface else {
             add_environment(stage, lane);
             return None;
         };
-        let si = stage.scene.world().interaction(ray, hit);
-        let wo = -ray.direction;
-        add_emission(stage, lane, &si, wo);
+        add_emission(stage, lane, si, wo);
         if self.max_depth == Some(stage.depth) {
             return None;
         }
         let slot = &mut stage.slots[lane.slot as usize];
-        let bsdf = stage.scene.material(hit.geometry).bsdf(&si, &mut slot.lambda);
-        let [light_x, light_y, u_light, u_roulette] = slot.stream.draw4(FIRST_PATH_GROUP + 2 * stage.depth);
-        let bsdf_group = FIRST_PATH_GROUP + 2 * stage.depth + 1;
-        // The first two numbers are the same, and cheaper alone.
-        let ([bsdf_x, bsdf_y], u_lobe) = if bsdf.has_several_lobes() {
-            let [x, y, lobe, _] = slot.stream.draw4(bsdf_group);
-            ([x, y], lobe)
-        } else {
-            (slot.stream.draw2(bsdf_group), 0.0)
-        };
+        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, &mut slot.lambda);
         if !bsdf.is_delta() {
-            sample_light(stage, lane, &si, &bsdf, wo, u_light, Vec2::new(light_x, light_y));
+            sample_light(stage, lane, si, &bsdf, wo, numbers);
         }
-
-        let sample = bsdf.sample_f(wo, u_lobe, Vec2::new(bsdf_x, bsdf_y), TransportMode::Radiance)?;
+        let sample = bsdf.sample_f(wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance)?;
         let mut next = Lane {
             slot: lane.slot,
             beta: lane.beta * sample.weight(),
@@ -62,7 +58,7 @@ impl PathIntegrator {
         };
         let survival = self.survival(stage.depth, &next);
         if survival < 1.0 {
-            if u_roulette >= survival {
+            if numbers.roulette >= survival {
                 return None;
             }
             next.beta *= 1.0 / survival;
@@ -128,12 +124,14 @@ fn sample_light(
     si: &SurfaceInteraction,
     bsdf: &Bsdf,
     wo: Vec3,
-    u_light: f32,
-    u: Vec2,
+    numbers: &EventNumbers,
 ) -> Option<()> {
     let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
-    let chosen = stage.scene.light_sampler().sample(u_light)?;
-    let sample = stage.scene.light(chosen.light).sample_li(si.p, u, &slot.lambda)?;
+    let chosen = stage.scene.light_sampler().sample(numbers.which_light)?;
+    let sample = stage
+        .scene
+        .light(chosen.light)
+        .sample_li(si.p, numbers.light, &slot.lambda)?;
     let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
     if f.is_black() {
         return None;

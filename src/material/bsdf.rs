@@ -94,12 +94,6 @@ impl Bsdf {
         }
     }
 
-    /// Whether [`Bsdf::sample_f`] looks at `u_lobe`.
-    #[inline]
-    pub fn has_several_lobes(&self) -> bool {
-        matches!(self.lobe, Lobe::Dielectric(_))
-    }
-
     /// |cos| of `w` to the shading normal.
     #[inline]
     pub fn abs_cos(&self, w: Vec3) -> f32 {
