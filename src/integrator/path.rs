@@ -57,7 +57,7 @@ impl PathIntegrator {
             eta_scale: lane.eta_scale * sample.eta * sample.eta,
             origin: match sample.density {
                 Density::Delta(_) => Origin::Delta,
-                Density::Continuous(pdf) => Origin::Sampled { p: si.p, pdf },
+                Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
         };
         let survival = self.survival(stage.depth, &next);
@@ -91,8 +91,8 @@ fn add_environment(stage: &mut Stage, lane: &Lane) {
     for (id, light) in stage.scene.environments() {
         let weight = match lane.origin {
             Origin::Delta => 1.0,
-            Origin::Sampled { pdf, .. } => {
-                power_heuristic(pdf.0, stage.scene.light_sampler().pmf(id) * light.pdf_li().0)
+            Origin::Sampled { p, n, pdf } => {
+                power_heuristic(pdf.0, stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li().0)
             }
         };
         slot.l += lane.beta * light.le(&slot.lambda) * weight;
@@ -113,8 +113,8 @@ fn add_emission(stage: &mut Stage, lane: &Lane, si: &SurfaceInteraction, wo: Vec
     }
     let weight = match lane.origin {
         Origin::Delta => 1.0,
-        Origin::Sampled { p, pdf } => {
-            power_heuristic(pdf.0, stage.scene.light_sampler().pmf(id) * light.pdf_li(p, si).0)
+        Origin::Sampled { p, n, pdf } => {
+            power_heuristic(pdf.0, stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0)
         }
     };
     slot.l += lane.beta * le * weight;
@@ -132,7 +132,7 @@ fn sample_light(
     u: Vec2,
 ) -> Option<()> {
     let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
-    let chosen = stage.scene.light_sampler().sample(u_light)?;
+    let chosen = stage.scene.light_sampler().sample(si.p, si.ns, u_light)?;
     let sample = stage.scene.light(chosen.light).sample_li(si.p, u, &slot.lambda)?;
     let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
     if f.is_black() {

@@ -56,8 +56,8 @@ pub(super) struct Slot {
 pub(super) enum Origin {
     /// The camera or a delta lobe: in no other way.
     Delta,
-    /// A BSDF sample at a point, with this density: by light sampling too.
-    Sampled { p: Vec3, pdf: SolidAnglePdf },
+    /// A BSDF sample at a point with a normal, with this density: by light sampling too.
+    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
 }
 
 /// A live path.

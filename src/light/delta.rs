@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use super::{LightDensity, LightEnd, LightSample};
+use super::{LightBounds, LightDensity, LightEnd, LightSample};
 use crate::math::{Bounds3, Vec3};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
@@ -32,6 +32,11 @@ impl PointLight {
             },
             density: LightDensity::Delta,
         })
+    }
+
+    pub(super) fn bounds(&self) -> LightBounds {
+        let here = Bounds3::from_points([self.position]);
+        LightBounds::omnidirectional(here, self.intensity.photometric_luminance())
     }
 
     pub(super) fn power(&self) -> f32 {

@@ -1,11 +1,14 @@
 //! Lights: what they emit, and how a direction towards one is sampled. Each kind is a file.
 
 mod area;
+mod bounds;
+mod bvh;
 mod delta;
 mod environment;
 mod sampler;
 
 pub use area::{AreaLight, EmitterShape};
+pub use bounds::LightBounds;
 pub use delta::{DistantLight, PointLight};
 pub use environment::EnvironmentLight;
 pub use sampler::{LightSampler, SampledLight};
@@ -105,6 +108,15 @@ impl Light {
         match self {
             Self::Area(light) => light.pdf_li(p, si.p, si.ng),
             Self::Point(_) | Self::Distant(_) | Self::Environment(_) => SolidAnglePdf(0.0),
+        }
+    }
+
+    /// Where and where to it emits, for a hierarchy over lights; `None` if it is infinitely far away.
+    pub fn bounds(&self) -> Option<LightBounds> {
+        match self {
+            Self::Area(light) => Some(light.bounds()),
+            Self::Point(light) => Some(light.bounds()),
+            Self::Distant(_) | Self::Environment(_) => None,
         }
     }
 

@@ -14,4 +14,4 @@ pub use mis::{balance_heuristic, power_heuristic};
 pub use sampler::{SampleStream, Sampler, SamplerKind};
 
 /// The largest number below one.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+pub(crate) const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;

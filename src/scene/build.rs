@@ -59,12 +59,11 @@ impl Scene {
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
-        let light_sampler = match desc.integrator {
-            IntegratorDesc::Path {
-                light_sampler: LightSamplerKind::Uniform,
-                ..
-            } => LightSampler::uniform(&builder.lights),
-            IntegratorDesc::Path { .. } => LightSampler::power(&builder.lights, &bounds),
+        let IntegratorDesc::Path { light_sampler, .. } = desc.integrator;
+        let light_sampler = match light_sampler {
+            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
+            LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
+            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),
         };
         Ok(Self {
             world,
