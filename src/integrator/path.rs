@@ -26,7 +26,7 @@ impl PathIntegrator {
     #[inline]
     pub(super) fn shade(&self, stage: &mut Stage, lane: &Lane, ray: &Ray, hit: Option<Hit>) -> Option<(Lane, Ray)> {
         let Some(hit) = hit else {
-            add_environment(stage, lane);
+            add_environment(stage, lane, ray);
             return None;
         };
         let si = stage.scene.world().interaction(ray, hit);
@@ -86,16 +86,17 @@ impl PathIntegrator {
 }
 
 /// Adds what the environment sends along a ray that left the scene.
-fn add_environment(stage: &mut Stage, lane: &Lane) {
+fn add_environment(stage: &mut Stage, lane: &Lane, ray: &Ray) {
     let slot = &mut stage.slots[lane.slot as usize];
     for (id, light) in stage.scene.environments() {
         let weight = match lane.origin {
             Origin::Delta => 1.0,
-            Origin::Sampled { p, n, pdf } => {
-                power_heuristic(pdf.0, stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li().0)
-            }
+            Origin::Sampled { p, n, pdf } => power_heuristic(
+                pdf.0,
+                stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, ray.direction, ray.time).0,
+            ),
         };
-        slot.l += lane.beta * light.le(&slot.lambda) * weight;
+        slot.l += lane.beta * light.le(ray.origin, ray.direction, ray.time, &slot.lambda) * weight;
     }
 }
 
@@ -133,7 +134,10 @@ fn sample_light(
 ) -> Option<()> {
     let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
     let chosen = stage.scene.light_sampler().sample(si.p, si.ns, u_light)?;
-    let sample = stage.scene.light(chosen.light).sample_li(si.p, u, &slot.lambda)?;
+    let sample = stage
+        .scene
+        .light(chosen.light)
+        .sample_li(si.p, si.time, u, &slot.lambda)?;
     let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
     if f.is_black() {
         return None;
