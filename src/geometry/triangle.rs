@@ -78,7 +78,7 @@ pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> Tr
     let inverse = -1.0 / direction.dot(cross);
     let (v, w) = (e2.dot(moment) * inverse, -e1.dot(moment) * inverse);
     // A ray within the plane: NaN or infinite.
-    let is_finite = (v - v == 0.0) & (w - w == 0.0);
+    let is_finite = v.is_finite() & w.is_finite();
     let (v, w) = (larger_of(v, 0.0), larger_of(w, 0.0));
     let scale = 1.0 / larger_of(v + w, 1.0);
     let v = if is_finite { v * scale } else { 1.0 / 3.0 };

@@ -22,21 +22,21 @@ const LAST_SURVIVAL_DEPTH: u32 = 64;
 const LAST_SURVIVAL: f32 = 0.95;
 
 impl PathIntegrator {
-    /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray. `wo` is the
-    /// reversed direction of its ray.
+    /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray.
     #[inline]
     pub(super) fn shade(
         &self,
         stage: &mut Stage,
         lane: &Lane,
+        ray: &Ray,
         surface: Option<&SurfaceInteraction>,
-        wo: Vec3,
         numbers: &EventNumbers,
     ) -> Option<(Lane, Ray)> {
         let Some(si) = surface else {
-            add_environment(stage, lane);
+            add_environment(stage, lane, ray);
             return None;
         };
+        let wo = -ray.direction;
         add_emission(stage, lane, si, wo);
         if self.max_depth == Some(stage.depth) {
             return None;
@@ -53,7 +53,7 @@ impl PathIntegrator {
             eta_scale: lane.eta_scale * sample.eta * sample.eta,
             origin: match sample.density {
                 Density::Delta(_) => Origin::Delta,
-                Density::Continuous(pdf) => Origin::Sampled { p: si.p, pdf },
+                Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
         };
         let survival = self.survival(stage.depth, &next);
@@ -82,16 +82,17 @@ impl PathIntegrator {
 }
 
 /// Adds what the environment sends along a ray that left the scene.
-fn add_environment(stage: &mut Stage, lane: &Lane) {
+fn add_environment(stage: &mut Stage, lane: &Lane, ray: &Ray) {
     let slot = &mut stage.slots[lane.slot as usize];
     for (id, light) in stage.scene.environments() {
         let weight = match lane.origin {
             Origin::Delta => 1.0,
-            Origin::Sampled { pdf, .. } => {
-                power_heuristic(pdf.0, stage.scene.light_sampler().pmf(id) * light.pdf_li().0)
-            }
+            Origin::Sampled { p, n, pdf } => power_heuristic(
+                pdf.0,
+                stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, ray.direction, ray.time).0,
+            ),
         };
-        slot.l += lane.beta * light.le(&slot.lambda) * weight;
+        slot.l += lane.beta * light.le(ray.origin, ray.direction, ray.time, &slot.lambda) * weight;
     }
 }
 
@@ -109,8 +110,8 @@ fn add_emission(stage: &mut Stage, lane: &Lane, si: &SurfaceInteraction, wo: Vec
     }
     let weight = match lane.origin {
         Origin::Delta => 1.0,
-        Origin::Sampled { p, pdf } => {
-            power_heuristic(pdf.0, stage.scene.light_sampler().pmf(id) * light.pdf_li(p, si).0)
+        Origin::Sampled { p, n, pdf } => {
+            power_heuristic(pdf.0, stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0)
         }
     };
     slot.l += lane.beta * le * weight;
@@ -127,11 +128,11 @@ fn sample_light(
     numbers: &EventNumbers,
 ) -> Option<()> {
     let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
-    let chosen = stage.scene.light_sampler().sample(numbers.which_light)?;
+    let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
     let sample = stage
         .scene
         .light(chosen.light)
-        .sample_li(si.p, numbers.light, &slot.lambda)?;
+        .sample_li(si.p, si.time, numbers.light, &slot.lambda)?;
     let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
     if f.is_black() {
         return None;

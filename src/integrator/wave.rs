@@ -56,8 +56,8 @@ pub(super) struct Slot {
 pub(super) enum Origin {
     /// The camera or a delta lobe: in no other way.
     Delta,
-    /// A BSDF sample at a point, with this density: by light sampling too.
-    Sampled { p: Vec3, pdf: SolidAnglePdf },
+    /// A BSDF sample at a point with a normal, with this density: by light sampling too.
+    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
 }
 
 /// A live path.
@@ -258,8 +258,7 @@ impl<'a> Wave<'a> {
                 let ray = packet.get(i % LANES);
                 let surface = hits.get(i % LANES).map(|hit| surfaces.get(i % LANES, &ray, hit));
                 let numbers = numbers.lane(i % LANES);
-                let Some((next, ray)) = path.shade(&mut stage, &lane, surface.as_ref(), -ray.direction, &numbers)
-                else {
+                let Some((next, ray)) = path.shade(&mut stage, &lane, &ray, surface.as_ref(), &numbers) else {
                     continue;
                 };
                 if !ray.is_valid() {
