@@ -8,7 +8,6 @@ use crate::light::LightDensity;
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
 use crate::sampling::power_heuristic;
-use crate::spectrum::SampledSpectrum;
 
 /// The path tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,19 +132,19 @@ fn sample_light(
         .scene
         .light(chosen.light)
         .sample_li(si.p, si.time, numbers.light, &slot.lambda)?;
-    let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
-    if f.is_black() {
+    let bsdf = bsdf.eval(wo, sample.wi, TransportMode::Radiance)?;
+    if bsdf.f.is_black() {
         return None;
     }
-    let mut factor = bsdf.abs_cos(sample.wi) / chosen.pmf;
+    let mut factor = bsdf.cos_theta / chosen.pmf;
     if let LightDensity::Continuous(pdf) = sample.density {
-        let pdf_light = chosen.pmf * pdf.0;
-        let pdf_bsdf = bsdf.pdf(wo, sample.wi, TransportMode::Radiance).0;
-        factor *= power_heuristic(pdf_light, pdf_bsdf) / pdf.0;
+        factor *= power_heuristic(chosen.pmf * pdf.0, bsdf.pdf.0) / pdf.0;
     }
     let ray = shadow_ray(si, sample.wi, sample.end);
     if ray.is_valid() {
-        stage.shadows.push(&ray, lane.slot, lane.beta * f * sample.li * factor);
+        stage
+            .shadows
+            .push(&ray, lane.slot, lane.beta * bsdf.f * sample.li * factor);
     } else {
         slot.broken = true;
     }

@@ -9,7 +9,7 @@ mod diffuse;
 mod fresnel;
 mod microfacet;
 
-pub use bsdf::{Bsdf, BsdfSample, Density, LocalSample, TransportMode};
+pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, LocalSample, LocalValue, TransportMode};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
