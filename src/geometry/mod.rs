@@ -1,5 +1,6 @@
 //! Shapes, the world they make up, packets of rays, and what a hit says about the surface.
 
+mod cone;
 mod mesh;
 mod packet;
 mod sphere;
@@ -7,6 +8,7 @@ mod surface;
 mod triangle;
 mod world;
 
+pub use cone::RayCone;
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket};
 pub use sphere::{Sphere, SphereHits};

@@ -43,8 +43,15 @@ pub struct SurfaceInteraction {
     pub ns: Vec3,
     /// Derivative of the position by the first texture coordinate, not normalised; may be zero.
     pub dpdu: Vec3,
+    /// Derivative of the position by the second texture coordinate; zero where `dpdu` is.
+    pub dpdv: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Back along the ray, of the length of its direction.
+    pub wo: Vec3,
+    /// Width of the ray's [cone](super::RayCone) at the point: how much of the surface one sample stands for, across the ray. 0, as
+    /// [`World::interaction`] leaves it, asks for the finest detail of textures.
+    pub footprint: f32,
     /// Scene time of the ray.
     pub time: f32,
     /// What was hit.
@@ -91,11 +98,11 @@ impl World {
                     let triangle = hit.primitive.index();
                     let vertices = mesh.triangle(triangle, ray.time);
                     let point = triangle::point(&vertices, origin, direction).in_world();
-                    world_triangle(mesh, &vertices, &point, ray.time, hit)
+                    world_triangle(mesh, &vertices, &point, ray, hit)
                 }
                 Shape::Spheres(spheres) => {
                     let sphere = &spheres[hit.primitive.index()];
-                    finish(&sphere_surface(sphere, origin, direction, ray.tnear), ray.time, hit)
+                    finish(&sphere_surface(sphere, origin, direction, ray.tnear), ray, hit)
                 }
             };
         };
@@ -109,7 +116,7 @@ impl World {
         };
         finish(
             &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
-            ray.time,
+            ray,
             hit,
         )
     }
@@ -163,7 +170,7 @@ impl SurfacePacket<'_> {
             return self.world.interaction(ray, hit);
         };
         let vertices = self.vertices.map(|axes| Vec3::from_array(axes.map(|axis| axis[lane])));
-        world_triangle(mesh, &vertices, &self.points.get(lane), ray.time, hit)
+        world_triangle(mesh, &vertices, &self.points.get(lane), ray, hit)
     }
 }
 
@@ -177,10 +184,11 @@ struct LocalSurface {
     /// Of any length but 0.
     ns: Vec3,
     dpdu: Vec3,
+    dpdv: Vec3,
     uv: Vec2,
 }
 
-fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
+fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
     let ng = local.ng.as_vec3();
     SurfaceInteraction {
         p: local.p.as_vec3(),
@@ -188,8 +196,11 @@ fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
         ng,
         ns: local.ns.try_normalize().unwrap_or(ng),
         dpdu: local.dpdu,
+        dpdv: local.dpdv,
         uv: local.uv,
-        time,
+        wo: -ray.direction,
+        footprint: 0.0,
+        time: ray.time,
         hit,
     }
 }
@@ -218,6 +229,7 @@ fn to_world(
         ng: ng * shrink,
         ns: normal(local.ns.as_dvec3()).normalize_or_zero().as_vec3(),
         dpdu: world_from_object.transform_vector3(local.dpdu.as_dvec3()).as_vec3(),
+        dpdv: world_from_object.transform_vector3(local.dpdv.as_dvec3()).as_vec3(),
         uv: local.uv,
     }
 }
@@ -229,6 +241,7 @@ struct Attributes {
     /// Interpolated shading normal, not normalised; `None` without normals, or where they cancel.
     ns: Option<Vec3>,
     dpdu: Vec3,
+    dpdv: Vec3,
     uv: Vec2,
 }
 
@@ -248,19 +261,20 @@ fn attributes(mesh: &TriangleMesh, triangle: usize, vertices: &[Vec3; 3], ng: Ve
         ns = (mean != Vec3::ZERO).then_some(mean);
     }
     let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    let (uv, dpdu) = match mesh.uvs() {
+    let (uv, [dpdu, dpdv]) = match mesh.uvs() {
         // Without coordinates: (0, 0), (1, 0), (1, 1).
-        None => (Vec2::new(v + w, w), e1),
+        None => (Vec2::new(v + w, w), [e1, e2 - e1]),
         Some(uvs) => {
             let uvs = corners.map(|v| uvs[v]);
             let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
-            (uv, triangle_dpdu(e1, e2, &uvs))
+            (uv, triangle_derivatives(e1, e2, &uvs))
         }
     };
     Attributes {
         flips_normal,
         ns,
         dpdu,
+        dpdv,
         uv,
     }
 }
@@ -277,6 +291,7 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
         ng,
         ns: attributes.ns.unwrap_or(ng.as_vec3()),
         dpdu: attributes.dpdu,
+        dpdv: attributes.dpdv,
         uv: attributes.uv,
     }
 }
@@ -287,7 +302,7 @@ fn world_triangle(
     mesh: &TriangleMesh,
     vertices: &[Vec3; 3],
     point: &WorldPoint,
-    time: f32,
+    ray: &Ray,
     hit: Hit,
 ) -> SurfaceInteraction {
     let attributes = attributes(mesh, hit.primitive.index(), vertices, point.ng, point.barycentrics);
@@ -298,21 +313,25 @@ fn world_triangle(
         ng,
         ns: attributes.ns.and_then(Vec3::try_normalize).unwrap_or(ng),
         dpdu: attributes.dpdu,
+        dpdv: attributes.dpdv,
         uv: attributes.uv,
-        time,
+        wo: -ray.direction,
+        footprint: 0.0,
+        time: ray.time,
         hit,
     }
 }
 
-/// Solves dp = dpdu du + dpdv dv along two edges; zero where the texture coordinates are degenerate.
+/// Solves dp = dpdu du + dpdv dv along two edges for dpdu and dpdv; zero where the texture coordinates are degenerate.
 #[inline]
-fn triangle_dpdu(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> Vec3 {
+fn triangle_derivatives(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> [Vec3; 2] {
     let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = d1.perp_dot(d2);
     if determinant == 0.0 {
-        Vec3::ZERO
+        [Vec3::ZERO; 2]
     } else {
-        (e1 * d2.y - e2 * d1.y) / determinant
+        let inverse = 1.0 / determinant;
+        [(e1 * d2.y - e2 * d1.y) * inverse, (e2 * d1.x - e1 * d2.x) * inverse]
     }
 }
 
@@ -338,6 +357,11 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         ((std::f64::consts::PI - unit.z.clamp(-1.0, 1.0).acos()) / std::f64::consts::PI) as f32,
     );
     let dpdu = world.transform_vector3(DVec3::new(-unit.y, unit.x, 0.0) * sphere.radius() * std::f64::consts::TAU);
+    // v goes from the south pole to the north pole.
+    let from_axis = unit.truncate().length();
+    let azimuth = unit.truncate() / from_axis.max(f64::MIN_POSITIVE);
+    let along = (azimuth * -unit.z).extend(from_axis);
+    let dpdv = world.transform_vector3(along * sphere.radius() * std::f64::consts::PI);
     LocalSurface {
         p,
         // The test that a backend makes is in double precision.
@@ -345,6 +369,7 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         ng,
         ns: ng.as_vec3(),
         dpdu: dpdu.as_vec3(),
+        dpdv: dpdv.as_vec3(),
         uv,
     }
 }

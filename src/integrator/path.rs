@@ -28,14 +28,16 @@ impl PathIntegrator {
         stage: &mut Stage,
         lane: &Lane,
         ray: &Ray,
-        surface: Option<&SurfaceInteraction>,
+        surface: Option<SurfaceInteraction>,
         numbers: &EventNumbers,
     ) -> Option<(Lane, Ray)> {
-        let Some(si) = surface else {
+        let Some(mut si) = surface else {
             add_environment(stage, lane, ray);
             return None;
         };
-        let wo = -ray.direction;
+        let cone = lane.cone.after(si.p.distance(ray.origin));
+        si.footprint = cone.width;
+        let (si, wo) = (&si, si.wo);
         add_emission(stage, lane, si, wo);
         if self.max_depth == Some(stage.depth) {
             return None;
@@ -54,6 +56,7 @@ impl PathIntegrator {
                 Density::Delta(_) => Origin::Delta,
                 Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
+            cone,
         };
         let survival = self.survival(stage.depth, &next);
         if survival < 1.0 {

@@ -17,7 +17,7 @@ use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
-use crate::geometry::{HitPacket, LANES, Ray, RayPacket};
+use crate::geometry::{HitPacket, LANES, Ray, RayCone, RayPacket};
 use crate::math::{Vec2, Vec3, Vectorizer};
 use crate::sampling::{SampleStream, SolidAnglePdf};
 use crate::scene::{Scene, View};
@@ -72,6 +72,8 @@ pub(super) struct Lane {
     pub eta_scale: f32,
     /// Where the ray came from.
     pub origin: Origin,
+    /// How wide the ray is.
+    pub cone: RayCone,
 }
 
 impl Lane {
@@ -191,10 +193,11 @@ impl<'a> Wave<'a> {
                 beta: SampledSpectrum::ONE,
                 eta_scale: 1.0,
                 origin: Origin::Delta,
+                cone: RayCone::default(),
             };
             if traced.contains(x, y) {
                 let of = |group: &[[f32; LANES]; 4]| group.map(|numbers| numbers[i]);
-                let (mut slot, ray) = camera_slot(
+                let (mut slot, ray, cone) = camera_slot(
                     self.scene,
                     self.view,
                     [x, y],
@@ -202,6 +205,7 @@ impl<'a> Wave<'a> {
                     of(&film),
                     of(&detector),
                 );
+                lane.cone = cone;
                 if ray.is_valid() {
                     packet.set(i, &ray);
                     self.stats.camera_rays += 1;
@@ -258,7 +262,7 @@ impl<'a> Wave<'a> {
                 let ray = packet.get(i % LANES);
                 let surface = hits.get(i % LANES).map(|hit| surfaces.get(i % LANES, &ray, hit));
                 let numbers = numbers.lane(i % LANES);
-                let Some((next, ray)) = path.shade(&mut stage, &lane, &ray, surface.as_ref(), &numbers) else {
+                let Some((next, ray)) = path.shade(&mut stage, &lane, &ray, surface, &numbers) else {
                     continue;
                 };
                 if !ray.is_valid() {
@@ -310,7 +314,7 @@ impl<'a> Wave<'a> {
     }
 }
 
-/// A pixel sample and its camera ray, from the numbers of the two groups that the camera sample uses.
+/// A pixel sample, its camera ray and how wide that is, from the numbers of the two groups that the camera sample uses.
 #[inline]
 fn camera_slot(
     scene: &Scene,
@@ -319,14 +323,16 @@ fn camera_slot(
     (sample, stream): (u32, SampleStream),
     [film_x, film_y, lens_x, lens_y]: [f32; 4],
     [u_lambda, u_time, ..]: [f32; 4],
-) -> (Slot, Ray) {
+) -> (Slot, Ray, RayCone) {
     let filter = view.filter.sample(Vec2::new(film_x, film_y));
     let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-    let ray = view.camera.sample_ray(&CameraSample {
+    let camera_sample = CameraSample {
         film: center + filter.offset,
         lens: Vec2::new(lens_x, lens_y),
         time: u_time,
-    });
+    };
+    let ray = view.camera.sample_ray(&camera_sample);
+    let cone = view.camera.ray_cone(camera_sample.film, view.detail_scale());
     let lambda = match scene.color() {
         ColorMode::Spectral => Wavelengths::sample_visible(u_lambda),
         ColorMode::Rgb => Wavelengths::rgb(),
@@ -340,7 +346,7 @@ fn camera_slot(
         l: SampledSpectrum::ZERO,
         broken: false,
     };
-    (slot, ray)
+    (slot, ray, cone)
 }
 
 /// The random numbers of a scattering event of eight paths: see the table in [`integrator`](super).
