@@ -127,6 +127,12 @@ impl Bsdf {
         }
     }
 
+    /// The frame of the shading normal.
+    #[inline]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
     /// |cos| of `w` to the shading normal.
     #[inline]
     pub fn abs_cos(&self, w: Vec3) -> f32 {
