@@ -2,25 +2,34 @@
 //!
 //! Each lobe is a file. Lobes work in the local frame of the shading normal, where the cosine to the normal is z.
 
+mod argument_random;
+mod beckmann;
 mod bsdf;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod diffuse_transmission;
 mod fresnel;
+mod layered;
 mod microfacet;
+mod multiscatter;
+mod oren_nayar;
+mod thin_dielectric;
 
-pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, LocalSample, LocalValue, TransportMode};
+pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, Lobe, LocalSample, LocalValue, TransportMode};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
+pub use diffuse_transmission::DiffuseTransmission;
 pub use fresnel::{fresnel_complex, fresnel_dielectric, refract};
-pub use microfacet::Ggx;
+pub use layered::{Body, Interlayer, Layered};
+pub use microfacet::{Distribution, Microfacets};
+pub use oren_nayar::OrenNayar;
+pub use thin_dielectric::ThinDielectric;
 
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
-
-use bsdf::Lobe;
 
 /// The material of a surface.
 #[derive(Clone, Debug)]
@@ -35,14 +44,14 @@ pub enum Material {
         /// What it reflects.
         ior: ConductorIor,
         /// Microfacet slopes; `None` is smooth.
-        roughness: Option<Ggx>,
+        roughness: Option<Microfacets>,
     },
     /// The boundary of a transparent body, smooth or rough.
     Dielectric {
         /// Index of refraction inside over that outside.
         eta: CompiledSpectrum,
         /// Microfacet slopes; `None` is smooth.
-        roughness: Option<Ggx>,
+        roughness: Option<Microfacets>,
     },
 }
 

@@ -14,7 +14,7 @@ use crate::desc::{
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
 use crate::light::{AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, PointLight};
-use crate::material::{ConductorIor, Ggx, Material};
+use crate::material::{ConductorIor, Material, Microfacets};
 use crate::math::DVec3;
 
 /// What is collected while shapes and lights are gone through.
@@ -245,15 +245,15 @@ impl SceneBuilder<'_> {
     }
 }
 
-fn microfacets(roughness: RoughnessDesc) -> Option<Ggx> {
+fn microfacets(roughness: RoughnessDesc) -> Option<Microfacets> {
     let alpha = |r: f32| {
         if roughness.remap {
-            Ggx::alpha_from_roughness(r)
+            Microfacets::alpha_from_roughness(r)
         } else {
             r
         }
     };
-    Ggx::new(alpha(roughness.u), alpha(roughness.v))
+    Microfacets::ggx(alpha(roughness.u), alpha(roughness.v))
 }
 
 fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {

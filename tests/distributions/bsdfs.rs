@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Quat, Vec2, Vec3};
 use lucerna::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction};
-use lucerna::material::{Bsdf, ConductorIor, Density, Ggx, Material, TransportMode};
+use lucerna::material::{Bsdf, ConductorIor, Density, Material, Microfacets, TransportMode};
 use lucerna::spectrum::{ColorMode, Spectrum, SpectrumRole, Wavelengths};
 
 use super::common::chi2::Chi2;
@@ -48,11 +48,11 @@ impl Kind {
                     eta: index(METAL_N),
                     k: index(METAL_K),
                 },
-                roughness: Ggx::new(x, y),
+                roughness: Microfacets::ggx(x, y),
             },
             Self::Glass(eta, x, y) => Material::Dielectric {
                 eta: compile(eta.into(), SpectrumRole::Ior),
-                roughness: Ggx::new(x, y),
+                roughness: Microfacets::ggx(x, y),
             },
         };
         let surface = SurfaceInteraction {
