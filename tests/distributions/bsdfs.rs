@@ -1,14 +1,18 @@
 //! BSDFs: samples against pdf by chi-squared; values against the pdf-free quadrature of the model; reciprocity.
 
-use glam::{DVec3, Quat, Vec2, Vec3};
-use lucerna::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction};
-use lucerna::material::{Bsdf, ConductorIor, Density, Material, Microfacets, TransportMode};
-use lucerna::spectrum::{ColorMode, Spectrum, SpectrumRole, Wavelengths};
+use glam::{DVec3, Quat, Vec3};
+use lucerna::material::Distribution::{self, Beckmann, Ggx};
+use lucerna::material::{
+    Bsdf, Conductor, Density, Dielectric, Diffuse, DiffuseTransmission, Lobe, Microfacets, OrenNayar, TransportMode,
+};
+use lucerna::math::Frame;
+use lucerna::spectrum::SampledSpectrum;
 
 use super::common::chi2::Chi2;
 use super::common::effort;
+use super::common::grooves::Grooves;
 use super::common::means::{FEWEST_RUNS, Means};
-use super::common::microfacet::{Slopes, conductor_reflectance, dielectric_reflectance, direction};
+use super::common::microfacet::{Shape, Slopes, conductor_reflectance, dielectric_reflectance, direction};
 use super::common::random::Random;
 use super::first_two;
 
@@ -20,14 +24,19 @@ const MODES: [TransportMode; 2] = [RADIANCE, IMPORTANCE];
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Diffuse,
+    /// Roughness.
+    OrenNayar(f32),
+    /// Reflectance and transmittance.
+    Paper(f32, f32),
     /// Slopes.
-    Metal(f32, f32),
+    Metal(Distribution, f32, f32),
     /// Index and slopes.
-    Glass(f32, f32, f32),
+    Glass(Distribution, f32, f32, f32),
 }
 
 const METAL_N: f64 = 0.2;
 const METAL_K: f64 = 3.9;
+const ALBEDO: f32 = 0.7;
 
 impl Kind {
     /// The BSDF where the normal is +z and the tangent +x.
@@ -37,54 +46,44 @@ impl Kind {
 
     /// The BSDF for a normal and a derivative of the position, which need not be perpendicular or of unit length.
     fn bsdf_in(self, ns: Vec3, dpdu: Vec3) -> Bsdf {
-        let compile = |value: f64, role| Spectrum::constant(value as f32).compile(ColorMode::Spectral, role);
-        let index = |value| compile(value, SpectrumRole::Reflectance);
-        let material = match self {
-            Self::Diffuse => Material::Diffuse {
-                reflectance: index(0.7),
-            },
-            Self::Metal(x, y) => Material::Conductor {
-                ior: ConductorIor::Measured {
-                    eta: index(METAL_N),
-                    k: index(METAL_K),
-                },
-                roughness: Microfacets::ggx(x, y),
-            },
-            Self::Glass(eta, x, y) => Material::Dielectric {
-                eta: compile(eta.into(), SpectrumRole::Ior),
-                roughness: Microfacets::ggx(x, y),
-            },
+        let splat = SampledSpectrum::splat;
+        let lobe = match self {
+            Self::Diffuse => Lobe::Diffuse(Diffuse::new(splat(ALBEDO))),
+            Self::OrenNayar(roughness) => Lobe::OrenNayar(OrenNayar::new(splat(ALBEDO), roughness)),
+            Self::Paper(r, t) => Lobe::DiffuseTransmission(DiffuseTransmission::new(splat(r), splat(t))),
+            Self::Metal(distribution, x, y) => Lobe::Conductor(Conductor::new(
+                splat(METAL_N as f32),
+                splat(METAL_K as f32),
+                Microfacets::new(distribution, x, y),
+            )),
+            Self::Glass(distribution, eta, x, y) => {
+                Lobe::Dielectric(Dielectric::new(eta, Microfacets::new(distribution, x, y)))
+            }
         };
-        let surface = SurfaceInteraction {
-            p: Vec3::ZERO,
-            error: 0.0,
-            t: 1.0,
-            ng: ns,
-            ns,
-            dpdu,
-            uv: Vec2::ZERO,
-            time: 0.0,
-            hit: Hit {
-                geometry: GeometryId(0),
-                primitive: PrimitiveId(0),
-                instance: None,
-            },
-        };
-        material.bsdf(&surface, &mut Wavelengths::sample_visible(0.3))
+        Bsdf::new(Frame::from_normal_tangent(ns, dpdu), lobe)
     }
 
     /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
     fn albedo(self, wo: DVec3, mode: TransportMode) -> f64 {
         let up = DVec3::new(wo.x, wo.y, wo.z.abs());
+        let slopes = |distribution, x: f32, y: f32| {
+            let shape = match distribution {
+                Distribution::Ggx => Shape::Ggx,
+                Distribution::Beckmann => Shape::Beckmann,
+            };
+            Slopes(x.into(), y.into(), shape)
+        };
         match self {
-            Self::Diffuse => 0.7,
-            Self::Metal(x, y) => {
+            Self::Diffuse => ALBEDO.into(),
+            Self::OrenNayar(roughness) => Grooves(roughness.into()).albedo(up.z, ALBEDO.into()),
+            Self::Paper(r, t) => f64::from(r) + f64::from(t),
+            Self::Metal(distribution, x, y) => {
                 let fresnel = |cos| conductor_reflectance(cos, METAL_N, METAL_K);
-                Slopes(x.into(), y.into()).reflected(up, fresnel)
+                slopes(distribution, x, y).reflected(up, fresnel)
             }
-            Self::Glass(eta, x, y) => {
+            Self::Glass(distribution, eta, x, y) => {
                 let eta = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
-                let slopes = Slopes(x.into(), y.into());
+                let slopes = slopes(distribution, x, y);
                 let scale = if mode == RADIANCE { 1.0 / (eta * eta) } else { 1.0 };
                 let fresnel = |cos| dielectric_reflectance(cos, eta);
                 slopes.reflected(up, fresnel) + scale * slopes.transmitted(up, eta)
@@ -93,17 +92,25 @@ impl Kind {
     }
 }
 
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 18] = [
     Kind::Diffuse,
-    Kind::Metal(0.1, 0.1),
-    Kind::Metal(0.4, 0.4),
-    Kind::Metal(1.0, 1.0),
-    Kind::Metal(0.15, 0.5),
-    Kind::Glass(1.5, 0.1, 0.1),
-    Kind::Glass(1.5, 0.5, 0.5),
-    Kind::Glass(1.5, 0.2, 0.7),
-    Kind::Glass(0.75, 0.3, 0.3),
-    Kind::Glass(2.4, 0.9, 0.4),
+    Kind::OrenNayar(0.3),
+    Kind::OrenNayar(1.0),
+    Kind::Paper(0.5, 0.2),
+    Kind::Metal(Ggx, 0.1, 0.1),
+    Kind::Metal(Ggx, 0.4, 0.4),
+    Kind::Metal(Ggx, 1.0, 1.0),
+    Kind::Metal(Ggx, 0.15, 0.5),
+    Kind::Metal(Beckmann, 0.1, 0.1),
+    Kind::Metal(Beckmann, 0.8, 0.8),
+    Kind::Metal(Beckmann, 0.15, 0.5),
+    Kind::Glass(Ggx, 1.5, 0.1, 0.1),
+    Kind::Glass(Ggx, 1.5, 0.5, 0.5),
+    Kind::Glass(Ggx, 1.5, 0.2, 0.7),
+    Kind::Glass(Ggx, 0.75, 0.3, 0.3),
+    Kind::Glass(Ggx, 2.4, 0.9, 0.4),
+    Kind::Glass(Beckmann, 1.5, 0.2, 0.5),
+    Kind::Glass(Beckmann, 0.75, 0.4, 0.4),
 ];
 
 /// Polar angle and azimuth of wo, in degrees, for both sides: from the normal to grazing.
@@ -143,7 +150,7 @@ fn samples_have_the_density_of_pdf() {
             |wi| bsdf.pdf(wo, wi, RADIANCE).0,
         );
         report.assert_ok(&name);
-        if matches!(kind, Kind::Diffuse) {
+        if matches!(kind, Kind::Diffuse | Kind::OrenNayar(_) | Kind::Paper(..)) {
             assert!((report.mass - 1.0).abs() < 1e-4, "{name}: {}", report.mass);
         }
     }
@@ -152,7 +159,7 @@ fn samples_have_the_density_of_pdf() {
 /// A pdf that is off by 4 % on one side is noticed with the budget of the test above.
 #[test]
 fn a_wrong_density_is_noticed() {
-    let (bsdf, wo) = (Kind::Glass(1.5, 0.5, 0.5).bsdf(), direction(35.0, 70.0).as_vec3());
+    let (bsdf, wo) = (Kind::Glass(Ggx, 1.5, 0.5, 0.5).bsdf(), direction(35.0, 70.0).as_vec3());
     let test = Chi2 {
         samples: 200_000 * effort(10),
         bins: [24, 24],
@@ -188,7 +195,7 @@ fn samples_agree_with_f_and_pdf() {
                 assert!(close(again, pdf.0), "{name}, {mode:?}: pdf {again}, sampled {}", pdf.0);
                 assert!((bsdf.abs_cos(sample.wi) - sample.cos_theta).abs() < 1e-5, "{name}");
                 let expected_eta = match kind {
-                    Kind::Glass(eta, ..) if sample.wi.z * wo.z < 0.0 => {
+                    Kind::Glass(_, eta, ..) if sample.wi.z * wo.z < 0.0 => {
                         if wo.z > 0.0 {
                             eta
                         } else {
@@ -245,7 +252,7 @@ fn scattering_is_reciprocal() {
     for kind in KINDS {
         let bsdf = kind.bsdf();
         let index = |w: Vec3| match kind {
-            Kind::Glass(eta, ..) if w.z < 0.0 => eta,
+            Kind::Glass(_, eta, ..) if w.z < 0.0 => eta,
             _ => 1.0,
         };
         for _ in 0..2000 {
@@ -306,7 +313,7 @@ fn smooth_surfaces_keep_their_energy() {
         .into_iter()
         .flat_map(|e| DIRECTIONS.map(|d| (e, d)))
     {
-        let bsdf = Kind::Glass(eta, 0.0, 0.0).bsdf();
+        let bsdf = Kind::Glass(Ggx, eta, 0.0, 0.0).bsdf();
         assert!(bsdf.is_delta());
         let wo = direction(theta, phi).as_vec3();
         let across = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
