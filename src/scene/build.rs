@@ -5,16 +5,17 @@ use std::time::Instant;
 
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
+use super::textures::{SpectrumUse, TextureCompiler};
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
 use crate::desc::{
     AreaLightDesc, ConductorDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, MaterialDesc, MaterialKind,
-    RoughnessDesc, SceneDesc, ShapeDesc,
+    SceneDesc, ShapeDesc,
 };
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
 use crate::light::{AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, PointLight};
-use crate::material::{ConductorIor, Material, Microfacets};
+use crate::material::{ConductorIor, Material};
 use crate::math::DVec3;
 
 /// What is collected while shapes and lights are gone through.
@@ -49,10 +50,11 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
+        let mut textures = TextureCompiler::new(&desc.textures, builder.spectra);
         let materials = desc
             .materials
             .iter()
-            .map(|material| builder.material(material))
+            .map(|desc| material(&mut textures, desc))
             .collect();
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
@@ -221,39 +223,28 @@ impl SceneBuilder<'_> {
         };
         self.lights.push(light);
     }
-
-    fn material(&self, desc: &MaterialDesc) -> Material {
-        match &desc.kind {
-            MaterialKind::Diffuse { reflectance } => Material::Diffuse {
-                reflectance: self.spectra.albedo(reflectance),
-            },
-            MaterialKind::Conductor { interface, roughness } => Material::Conductor {
-                ior: match interface {
-                    ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
-                        eta: self.spectra.metal_index(eta),
-                        k: self.spectra.metal_index(k),
-                    },
-                    ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(self.spectra.albedo(r)),
-                },
-                roughness: microfacets(*roughness),
-            },
-            MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
-                eta: self.spectra.glass_index(eta),
-                roughness: microfacets(*roughness),
-            },
-        }
-    }
 }
 
-fn microfacets(roughness: RoughnessDesc) -> Option<Microfacets> {
-    let alpha = |r: f32| {
-        if roughness.remap {
-            Microfacets::alpha_from_roughness(r)
-        } else {
-            r
-        }
-    };
-    Microfacets::ggx(alpha(roughness.u), alpha(roughness.v))
+fn material(textures: &mut TextureCompiler<'_>, desc: &MaterialDesc) -> Material {
+    match &desc.kind {
+        MaterialKind::Diffuse { reflectance } => Material::Diffuse {
+            reflectance: textures.spectrum(reflectance, SpectrumUse::Albedo),
+        },
+        MaterialKind::Conductor { interface, roughness } => Material::Conductor {
+            ior: match interface {
+                ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
+                    eta: textures.spectrum(eta, SpectrumUse::Unbounded),
+                    k: textures.spectrum(k, SpectrumUse::Unbounded),
+                },
+                ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(textures.spectrum(r, SpectrumUse::Albedo)),
+            },
+            roughness: textures.roughness(roughness),
+        },
+        MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
+            eta: textures.spectra.glass_index(eta),
+            roughness: textures.roughness(roughness),
+        },
+    }
 }
 
 fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {

@@ -4,6 +4,7 @@
 mod build;
 mod shapes;
 mod spectra;
+mod textures;
 mod view;
 
 use std::sync::Arc;

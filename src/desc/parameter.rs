@@ -1,0 +1,150 @@
+//! Parameters as the reader knows them: name, type, range, default and meaning of each in one place, which the reader reads its
+//! values by and `lucerna list` prints.
+
+/// A parameter of a kind of entity.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// As in a scene file.
+    pub name: &'static str,
+    /// What values it takes.
+    pub kind: ParameterKind,
+    /// What it does, in a sentence without a full stop; units included.
+    pub doc: &'static str,
+}
+
+/// What values a parameter takes, and which one stands in where none is given.
+#[derive(Clone, Copy, Debug)]
+pub enum ParameterKind {
+    /// `bool`.
+    Bool(bool),
+    /// `integer`.
+    Integer {
+        /// If none is given.
+        default: i32,
+        /// The least and the greatest value.
+        range: (i32, i32),
+    },
+    /// `float`.
+    Float {
+        /// If none is given.
+        default: f64,
+        /// What is allowed.
+        range: FloatRange,
+    },
+    /// `vector3`.
+    Vector([f64; 3]),
+    /// `string`: one of a few words.
+    Choice {
+        /// If none is given.
+        default: &'static str,
+        /// All of them.
+        choices: &'static [&'static str],
+    },
+    /// `string`: free text, of which the meaning is in the doc.
+    Text {
+        /// If none is given.
+        default: &'static str,
+    },
+    /// `string`: the name of a file; there is no default.
+    File,
+    /// The value of a texture: `float`, or for a spectrum texture `rgb`, `spectrum` or `blackbody`.
+    Value {
+        /// If none is given; of a spectrum, at all wavelengths.
+        default: f64,
+    },
+    /// As [`ParameterKind::Value`], or the name of a `texture` of the same class.
+    Textured {
+        /// If none is given; of a spectrum, at all wavelengths.
+        default: f64,
+    },
+    /// `float` or the name of a float `texture`.
+    FloatTextured {
+        /// If none is given.
+        default: f64,
+    },
+}
+
+/// Which numbers are allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FloatRange {
+    /// All finite ones.
+    Any,
+    /// 0 or more.
+    NotNegative,
+    /// More than 0.
+    Positive,
+    /// 1 or more.
+    AtLeastOne,
+    /// From 0 to 1.
+    Unit,
+}
+
+impl FloatRange {
+    /// Whether a value is allowed.
+    pub fn contains(self, value: f64) -> bool {
+        match self {
+            Self::Any => true,
+            Self::NotNegative => value >= 0.0,
+            Self::Positive => value > 0.0,
+            Self::AtLeastOne => value >= 1.0,
+            Self::Unit => (0.0..=1.0).contains(&value),
+        }
+    }
+
+    /// Completes "must be".
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Any => "finite",
+            Self::NotNegative => "0 or more",
+            Self::Positive => "positive",
+            Self::AtLeastOne => "1 or more",
+            Self::Unit => "between 0 and 1",
+        }
+    }
+}
+
+impl ParameterKind {
+    /// The type, as a scene file writes it.
+    pub fn type_text(&self) -> &'static str {
+        match self {
+            Self::Bool(_) => "bool",
+            Self::Integer { .. } => "integer",
+            Self::Float { .. } => "float",
+            Self::Vector(_) => "vector3",
+            Self::Choice { .. } | Self::Text { .. } | Self::File => "string",
+            Self::Value { .. } => "float | spectrum",
+            Self::Textured { .. } => "float | spectrum | texture",
+            Self::FloatTextured { .. } => "float | texture",
+        }
+    }
+
+    /// The values that are allowed, for people.
+    pub fn range_text(&self) -> String {
+        match self {
+            Self::Bool(_) => "true, false".to_owned(),
+            Self::Integer { range, .. } => format!("{} to {}", range.0, range.1),
+            Self::Float { range, .. } => range.text().to_owned(),
+            Self::Choice { choices, .. } => choices.join(", "),
+            Self::Text { .. } => "see there".to_owned(),
+            Self::File => "a file".to_owned(),
+            Self::Vector(_) | Self::Value { .. } | Self::Textured { .. } | Self::FloatTextured { .. } => {
+                "finite".to_owned()
+            }
+        }
+    }
+
+    /// The default, as a scene file would write it; empty if there is none.
+    pub fn default_text(&self) -> String {
+        match self {
+            Self::Bool(default) => default.to_string(),
+            Self::Integer { default, .. } => default.to_string(),
+            Self::Float { default, .. }
+            | Self::Value { default }
+            | Self::Textured { default }
+            | Self::FloatTextured { default } => default.to_string(),
+            Self::Vector([x, y, z]) => format!("[ {x} {y} {z} ]"),
+            Self::Choice { default, .. } | Self::Text { default } => (*default).to_owned(),
+            Self::File => String::new(),
+        }
+    }
+}
