@@ -1,6 +1,6 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
-use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, ThinDielectric};
+use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, Principled, ThinDielectric};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
@@ -119,7 +119,7 @@ impl LocalSample {
 /// The lobes there are.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each is its type")]
-pub enum Lobe {
+pub enum Lobe<'a> {
     Diffuse(Diffuse),
     OrenNayar(OrenNayar),
     DiffuseTransmission(DiffuseTransmission),
@@ -127,6 +127,7 @@ pub enum Lobe {
     Dielectric(Dielectric),
     ThinDielectric(ThinDielectric),
     Layered(Layered),
+    Principled(Principled<'a>),
 }
 
 /// The scattering function at a point of a surface for the wavelengths of a path.
@@ -135,15 +136,15 @@ pub enum Lobe {
 /// walk seeded by the directions: it is right in the mean over directions close together, and its `pdf` is one to weight with,
 /// not exactly that of the samples, though never 0 where they fall.
 #[derive(Clone, Copy, Debug)]
-pub struct Bsdf {
+pub struct Bsdf<'a> {
     frame: Frame,
-    lobe: Lobe,
+    lobe: Lobe<'a>,
 }
 
-impl Bsdf {
+impl<'a> Bsdf<'a> {
     /// A lobe whose local z is the normal of `frame` and whose local x is its tangent.
     #[inline]
-    pub fn new(frame: Frame, lobe: Lobe) -> Self {
+    pub fn new(frame: Frame, lobe: Lobe<'a>) -> Self {
         Self { frame, lobe }
     }
 
@@ -151,7 +152,7 @@ impl Bsdf {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) => false,
+            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Principled(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
@@ -162,10 +163,7 @@ impl Bsdf {
     /// Whether [`Bsdf::sample_f`] looks at `u_lobe`.
     #[inline]
     pub fn has_several_lobes(&self) -> bool {
-        matches!(
-            self.lobe,
-            Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::DiffuseTransmission(_) | Lobe::Layered(_)
-        )
+        !matches!(self.lobe, Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_))
     }
 
     /// Whether `f` is an estimate that only its mean over neighbouring directions makes right, and `pdf` only a likeness of the
@@ -175,7 +173,11 @@ impl Bsdf {
             Lobe::Conductor(lobe) => lobe.is_estimate(),
             Lobe::Dielectric(lobe) => lobe.is_estimate(),
             Lobe::Layered(lobe) => !lobe.is_delta(),
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::ThinDielectric(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::ThinDielectric(_)
+            | Lobe::Principled(_) => false,
         }
     }
 
@@ -199,6 +201,7 @@ impl Bsdf {
             Lobe::DiffuseTransmission(lobe) => lobe.eval(wo, wi),
             Lobe::ThinDielectric(_) => None,
             Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
+            Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
             Lobe::Conductor(lobe) => lobe.eval(wo, wi),
             Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }?;
@@ -234,6 +237,7 @@ impl Bsdf {
             Lobe::DiffuseTransmission(lobe) => lobe.sample_f(wo, u_lobe, u),
             Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
             Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
             Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }?;

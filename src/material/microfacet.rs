@@ -48,6 +48,15 @@ impl Microfacets {
         Self::new(Distribution::Ggx, alpha_x, alpha_y)
     }
 
+    /// [`Microfacets::ggx`], where less than a slope of 0.002 is that much.
+    pub fn never_smooth(alpha_x: f32, alpha_y: f32) -> Self {
+        Self {
+            distribution: Distribution::Ggx,
+            alpha_x: alpha_x.max(2.0 * Self::SMOOTH),
+            alpha_y: alpha_y.max(2.0 * Self::SMOOTH),
+        }
+    }
+
     /// Whether it is the same along both tangents.
     #[inline]
     pub fn is_isotropic(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Microfacets;
+use super::{Distribution, Microfacets};
 use crate::geometry::SurfaceInteraction;
 use crate::texture::FloatTexture;
 
@@ -22,14 +22,22 @@ pub struct TexturedRoughness {
     v: FloatTexture,
     /// Whether the values are pbrt's roughness, not slopes.
     remap: bool,
+    distribution: Distribution,
 }
 
 impl Roughness {
     /// Of `u` and `v` along the tangents: pbrt-v4's perceptual roughness with `remap`, else the slopes themselves.
-    pub fn new(u: FloatTexture, v: FloatTexture, remap: bool) -> Self {
+    pub fn new(u: FloatTexture, v: FloatTexture, remap: bool, distribution: Distribution) -> Self {
         match (&u, &v) {
-            (FloatTexture::Constant(u), FloatTexture::Constant(v)) => Self::Constant(distribution(*u, *v, remap)),
-            _ => Self::Textured(Arc::new(TexturedRoughness { u, v, remap })),
+            (FloatTexture::Constant(u), FloatTexture::Constant(v)) => {
+                Self::Constant(microfacets(*u, *v, remap, distribution))
+            }
+            _ => Self::Textured(Arc::new(TexturedRoughness {
+                u,
+                v,
+                remap,
+                distribution,
+            })),
         }
     }
 
@@ -38,7 +46,10 @@ impl Roughness {
     pub fn at(&self, si: &SurfaceInteraction) -> Option<Microfacets> {
         match self {
             Self::Constant(facets) => *facets,
-            Self::Textured(textures) => distribution(textures.u.at(si), textures.v.at(si), textures.remap),
+            Self::Textured(textures) => {
+                let (u, v) = (textures.u.at(si), textures.v.at(si));
+                microfacets(u, v, textures.remap, textures.distribution)
+            }
         }
     }
 }
@@ -49,10 +60,10 @@ impl From<Option<Microfacets>> for Roughness {
     }
 }
 
-fn distribution(u: f32, v: f32, remap: bool) -> Option<Microfacets> {
+fn microfacets(u: f32, v: f32, remap: bool, distribution: Distribution) -> Option<Microfacets> {
     let alpha = |r: f32| {
         let r = r.max(0.0);
         if remap { Microfacets::alpha_from_roughness(r) } else { r }
     };
-    Microfacets::ggx(alpha(u), alpha(v))
+    Microfacets::new(distribution, alpha(u), alpha(v))
 }

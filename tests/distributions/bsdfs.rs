@@ -1,127 +1,20 @@
 //! BSDFs: samples against pdf by chi-squared; values against the pdf-free quadrature of the model; reciprocity.
 
 use glam::{DVec3, Quat, Vec3};
-use lucerna::material::Distribution::{self, Beckmann, Ggx};
-use lucerna::material::{
-    Bsdf, Conductor, Density, Dielectric, Diffuse, DiffuseTransmission, Lobe, Microfacets, OrenNayar, TransportMode,
-};
-use lucerna::math::Frame;
-use lucerna::spectrum::SampledSpectrum;
+use lucerna::material::Distribution::Ggx;
+use lucerna::material::{Bsdf, Density, TransportMode};
 
 use super::common::chi2::Chi2;
 use super::common::effort;
-use super::common::grooves::Grooves;
 use super::common::means::{FEWEST_RUNS, Means};
-use super::common::microfacet::{Shape, Slopes, conductor_reflectance, dielectric_reflectance, direction};
+use super::common::microfacet::{dielectric_reflectance, direction};
 use super::common::random::Random;
 use super::first_two;
+use super::kinds::{DIRECTIONS, KINDS, Kind};
 
 const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;
 const MODES: [TransportMode; 2] = [RADIANCE, IMPORTANCE];
-
-/// What is tested, with what the model is made of.
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Diffuse,
-    /// Roughness.
-    OrenNayar(f32),
-    /// Reflectance and transmittance.
-    Paper(f32, f32),
-    /// Slopes.
-    Metal(Distribution, f32, f32),
-    /// Index and slopes.
-    Glass(Distribution, f32, f32, f32),
-}
-
-const METAL_N: f64 = 0.2;
-const METAL_K: f64 = 3.9;
-const ALBEDO: f32 = 0.7;
-
-impl Kind {
-    /// The BSDF where the normal is +z and the tangent +x.
-    fn bsdf(self) -> Bsdf {
-        self.bsdf_in(Vec3::Z, Vec3::X)
-    }
-
-    /// The BSDF for a normal and a derivative of the position, which need not be perpendicular or of unit length.
-    fn bsdf_in(self, ns: Vec3, dpdu: Vec3) -> Bsdf {
-        let splat = SampledSpectrum::splat;
-        let lobe = match self {
-            Self::Diffuse => Lobe::Diffuse(Diffuse::new(splat(ALBEDO))),
-            Self::OrenNayar(roughness) => Lobe::OrenNayar(OrenNayar::new(splat(ALBEDO), roughness)),
-            Self::Paper(r, t) => Lobe::DiffuseTransmission(DiffuseTransmission::new(splat(r), splat(t))),
-            Self::Metal(distribution, x, y) => Lobe::Conductor(Conductor::new(
-                splat(METAL_N as f32),
-                splat(METAL_K as f32),
-                Microfacets::new(distribution, x, y),
-            )),
-            Self::Glass(distribution, eta, x, y) => {
-                Lobe::Dielectric(Dielectric::new(eta, Microfacets::new(distribution, x, y)))
-            }
-        };
-        Bsdf::new(Frame::from_normal_tangent(ns, dpdu), lobe)
-    }
-
-    /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
-    fn albedo(self, wo: DVec3, mode: TransportMode) -> f64 {
-        let up = DVec3::new(wo.x, wo.y, wo.z.abs());
-        let slopes = |distribution, x: f32, y: f32| {
-            let shape = match distribution {
-                Distribution::Ggx => Shape::Ggx,
-                Distribution::Beckmann => Shape::Beckmann,
-            };
-            Slopes(x.into(), y.into(), shape)
-        };
-        match self {
-            Self::Diffuse => ALBEDO.into(),
-            Self::OrenNayar(roughness) => Grooves(roughness.into()).albedo(up.z, ALBEDO.into()),
-            Self::Paper(r, t) => f64::from(r) + f64::from(t),
-            Self::Metal(distribution, x, y) => {
-                let fresnel = |cos| conductor_reflectance(cos, METAL_N, METAL_K);
-                slopes(distribution, x, y).reflected(up, fresnel)
-            }
-            Self::Glass(distribution, eta, x, y) => {
-                let eta = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
-                let slopes = slopes(distribution, x, y);
-                let scale = if mode == RADIANCE { 1.0 / (eta * eta) } else { 1.0 };
-                let fresnel = |cos| dielectric_reflectance(cos, eta);
-                slopes.reflected(up, fresnel) + scale * slopes.transmitted(up, eta)
-            }
-        }
-    }
-}
-
-const KINDS: [Kind; 18] = [
-    Kind::Diffuse,
-    Kind::OrenNayar(0.3),
-    Kind::OrenNayar(1.0),
-    Kind::Paper(0.5, 0.2),
-    Kind::Metal(Ggx, 0.1, 0.1),
-    Kind::Metal(Ggx, 0.4, 0.4),
-    Kind::Metal(Ggx, 1.0, 1.0),
-    Kind::Metal(Ggx, 0.15, 0.5),
-    Kind::Metal(Beckmann, 0.1, 0.1),
-    Kind::Metal(Beckmann, 0.8, 0.8),
-    Kind::Metal(Beckmann, 0.15, 0.5),
-    Kind::Glass(Ggx, 1.5, 0.1, 0.1),
-    Kind::Glass(Ggx, 1.5, 0.5, 0.5),
-    Kind::Glass(Ggx, 1.5, 0.2, 0.7),
-    Kind::Glass(Ggx, 0.75, 0.3, 0.3),
-    Kind::Glass(Ggx, 2.4, 0.9, 0.4),
-    Kind::Glass(Beckmann, 1.5, 0.2, 0.5),
-    Kind::Glass(Beckmann, 0.75, 0.4, 0.4),
-];
-
-/// Polar angle and azimuth of wo, in degrees, for both sides: from the normal to grazing.
-const DIRECTIONS: [(f64, f64); 6] = [
-    (0.0, 0.0),
-    (35.0, 70.0),
-    (65.0, 200.0),
-    (88.0, 20.0),
-    (140.0, 310.0),
-    (100.0, 45.0),
-];
 
 fn each_case() -> impl Iterator<Item = (Kind, DVec3, String)> {
     KINDS.into_iter().flat_map(|kind| {
