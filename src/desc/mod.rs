@@ -14,8 +14,10 @@
 //! - `PixelFilter "blackmanharris"`.
 
 mod bytes;
+mod integrator;
 mod light;
 mod material;
+mod material_kinds;
 mod parameter;
 pub mod pbrt;
 pub mod ply;
@@ -31,8 +33,16 @@ use glam::DAffine3;
 use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
+pub use integrator::{
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
+    Termination,
+};
 pub use light::{AreaLightDesc, LightDesc, LightKind};
-pub use material::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
+pub use material::{
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, RoughnessDesc, SpectrumDesc,
+    SpectrumValue,
+};
+pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{ClassedTexture, TextureClass, TextureDesc, TextureId, TextureKind, Textured};
@@ -50,119 +60,96 @@ pub struct SceneDesc {
     /// At least one; names are distinct.
     pub views: Vec<ViewDesc>,
     /// How light transport is to be estimated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct IntegratorDesc {
-    /// The greatest number of scattering events of a path (pbrt's count; default 5); `None`: as many as Russian roulette grants.
-    pub max_depth: Option<u32>,
-    /// How the light of next-event estimation is chosen; the expectation is the same for all.
-    pub light_sampler: LightSamplerKind,
-    /// The estimator.
-    pub kind: IntegratorKind,
+    pub integrator: IntegratorDesc,
+    /// What [`MaterialId`] counts. The first is pbrt's default, a diffuse reflectance of 0.5.
+    pub materials: Vec<MaterialDesc>,
+    /// What [`TextureId`] counts.
+    pub textures: Vec<TextureDesc>,
+    /// The shapes that stand in the world themselves, in file order.
+    pub shapes: Vec<ShapeDesc>,
+    /// Groups of shapes that are seen only through instances; what [`ObjectId`] counts.
+    pub objects: Vec<ObjectDesc>,
+    /// Copies of objects, in file order.
+    pub instances: Vec<InstanceDesc>,
+    /// Lights that are not shapes, in file order; for those see [`ShapeDesc::area_light`].
+    pub lights: Vec<LightDesc>,
+    /// The times of the start and the end of every [`MotionDesc`], in the time of the shutters: start < end. Scene time 0 is the
+    /// former, 1 the latter; outside them everything stands still.
+    pub transform_times: [f64; 2],
+    /// What has no effect or is approximated, in file order.
+    pub warnings: Vec<Diagnostic>,
+    /// BLAKE3 over the bytes of all files read, meshes and spectra included, in hexadecimal.
+    pub hash: String,
 }
 
-/// The estimators, with the parameters that are theirs alone.
+/// Index into [`SceneDesc::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// Index into [`SceneDesc::objects`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ObjectId(pub u32);
+
+/// A transform at the two [`SceneDesc::transform_times`]; how to go from one to the other (by decomposition and quaternions) is the
+/// renderer's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum IntegratorKind {
-    /// Unidirectional path tracing.
-    Path(PathDesc),
-    /// The rendering equation taken literally, the oracle.
-    Kajiya(KajiyaDesc),
+pub struct MotionDesc {
+    /// At scene time 0.
+    pub start: DAffine3,
+    /// At scene time 1.
+    pub end: DAffine3,
 }
 
-/// Parameters of [`IntegratorKind::Path`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathDesc {
-    /// Which of its two ways of finding light it uses.
-    pub strategy: Strategy,
-    /// How the two are weighed.
-    pub heuristic: Heuristic,
-    /// Into how many paths one is split where it first meets a surface that is not specular, at least 1.
-    pub splitting: u32,
-}
+impl MotionDesc {
+    /// No transform at all.
+    pub const IDENTITY: Self = Self {
+        start: DAffine3::IDENTITY,
+        end: DAffine3::IDENTITY,
+    };
 
-impl Default for PathDesc {
-    fn default() -> Self {
+    /// The same transform at all times.
+    pub fn fixed(transform: DAffine3) -> Self {
         Self {
-            strategy: Strategy::default(),
-            heuristic: Heuristic::default(),
-            splitting: 1,
+            start: transform,
+            end: transform,
+        }
+    }
+
+    /// Whether both transforms are the same, number for number.
+    pub fn is_static(&self) -> bool {
+        self.start == self.end
+    }
+
+    /// The inverse at each time.
+    pub fn inverse(&self) -> Self {
+        Self {
+            start: self.start.inverse(),
+            end: self.end.inverse(),
         }
     }
 }
 
-/// How a path tracer finds light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Strategy {
-    /// By directions drawn from BSDFs only: lights without extent are not found.
-    Bsdf,
-    /// By points of lights only, but where a path is specular.
-    Light,
-    /// Both, by multiple importance sampling.
-    #[default]
-    Mis,
+/// A named group of shapes (pbrt: `ObjectBegin` to `ObjectEnd`).
+#[derive(Clone, Debug)]
+pub struct ObjectDesc {
+    /// As in the file; distinct among the objects of a scene.
+    pub name: String,
+    /// Its shapes. Their `world_from_object` leads into the space of the group, and [`InstanceDesc::world_from_instance`] from
+    /// there into the world. None of them is a light.
+    pub shapes: Vec<ShapeDesc>,
+    /// Its name in the file.
+    pub span: Span,
 }
 
-/// Weights of multiple importance sampling (Veach 1997, section 9.2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Heuristic {
-    /// In proportion to the densities.
-    Balance,
-    /// In proportion to their squares.
-    #[default]
-    Power,
-}
-
-/// Parameters of [`IntegratorKind::Kajiya`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KajiyaDesc {
-    /// The probability of ending a path at a surface.
-    pub termination: Termination,
-    /// Directions that a path goes on in, at least 1.
-    pub branching: u32,
-    /// What they are drawn from.
-    pub distribution: Distribution,
-}
-
-impl Default for KajiyaDesc {
-    fn default() -> Self {
-        Self {
-            termination: Termination::Constant(0.5),
-            branching: 1,
-            distribution: Distribution::Bsdf,
-        }
-    }
-}
-
-/// The probability alpha of ending a path at a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Termination {
-    /// The same everywhere, in [0.05, 0.95].
-    Constant(f32),
-    /// One minus the surface's albedo, in [0.05, 0.95].
-    Albedo,
-}
-
-/// What directions are drawn from where a surface is not specular.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Distribution {
-    /// All alike.
-    Uniform,
-    /// In proportion to the cosine to the normal.
-    Cosine,
-    /// The BSDF's own.
-    Bsdf,
-}
-
-/// How one of many lights is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LightSamplerKind {
-    /// By a bounding volume hierarchy over the lights (pbrt's default).
-    #[default]
-    Bvh,
-    /// In proportion to emitted power.
-    Power,
-    /// All alike.
-    Uniform,
+/// One copy of an object.
+#[derive(Clone, Debug)]
+pub struct InstanceDesc {
+    /// Which object.
+    pub object: ObjectId,
+    /// Applied after the `world_from_object` of the object's shapes.
+    pub world_from_instance: MotionDesc,
+    /// The object's name in the `ObjectInstance` directive.
+    pub span: Span,
 }
 
 /// How strictly a file is read.

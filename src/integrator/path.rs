@@ -39,7 +39,7 @@ struct Event<'a> {
     /// The path; of a split one, its part of the throughput.
     lane: Lane,
     si: &'a SurfaceInteraction,
-    bsdf: &'a Bsdf,
+    bsdf: &'a Bsdf<'a>,
     wo: Vec3,
     numbers: &'a EventNumbers,
     /// The cone of the ray from here on.
@@ -207,7 +207,11 @@ impl PathIntegrator {
         if bsdf.f.is_black() {
             return None;
         }
-        let cos = if self.fault.is(Fault::MissingCosine) { 1.0 } else { bsdf.cos_theta };
+        let cos = if self.fault.is(Fault::MissingCosine) {
+            1.0
+        } else {
+            bsdf.cos_theta
+        };
         let mut factor = cos / chosen.pmf;
         if let LightDensity::Continuous(pdf) = sample.density {
             if self.strategy == Strategy::Mis {

@@ -114,8 +114,6 @@ impl Stage<'_> {
         stats.shadow_rays += self.shadows.len() as u64;
         let slots = &mut *self.slots;
         let accel = self.scene.accel();
-        stats.backend_time += self
-            .shadows
-            .flush(accel, |slot, value| slots[slot as usize].l += value);
+        stats.backend_time += self.shadows.flush(accel, |slot, value| slots[slot as usize].l += value);
     }
 }

@@ -125,14 +125,7 @@ impl<'a> Wave<'a> {
         self.pending.push(batch);
     }
 
-    fn generate_block(
-        &mut self,
-        batch: &mut Batch,
-        rect: PixelRect,
-        traced: PixelRect,
-        corner: [u32; 2],
-        sample: u32,
-    ) {
+    fn generate_block(&mut self, batch: &mut Batch, rect: PixelRect, traced: PixelRect, corner: [u32; 2], sample: u32) {
         let pixels: [[u32; 2]; LANES] =
             std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
         let streams = pixels.map(|[x, y]| {
@@ -174,7 +167,11 @@ impl<'a> Wave<'a> {
 
     /// Finds what the ray of each lane hits.
     fn trace(&mut self, batch: &Batch) {
-        let kind = if batch.depth == 0 { RayKind::Camera } else { RayKind::Bounce };
+        let kind = if batch.depth == 0 {
+            RayKind::Camera
+        } else {
+            RayKind::Bounce
+        };
         self.hits.resize(batch.rays.len(), HitPacket::EMPTY);
         let start = Instant::now();
         self.scene.accel().intersect(kind, &batch.rays, &mut self.hits, None);

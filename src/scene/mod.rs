@@ -2,6 +2,7 @@
 //! outlives renders and serves many [`View`]s.
 
 mod build;
+mod materials;
 mod shapes;
 mod spectra;
 mod textures;

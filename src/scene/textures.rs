@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
-    ClassedTexture, RoughnessDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured,
+    ClassedTexture, DistributionDesc, RoughnessDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind,
+    Textured,
 };
 use crate::error::Span;
-use crate::material::Roughness;
+use crate::material::{Distribution, Roughness};
 use crate::math::{DAffine3, DVec3};
 use crate::spectrum::CompiledSpectrum;
 use crate::texture::{Blend, BlendWeight, FloatTexture, SpectrumTexture};
@@ -58,7 +59,11 @@ impl<'a> TextureCompiler<'a> {
 
     /// The roughness of a microfacet surface.
     pub fn roughness(&mut self, desc: &RoughnessDesc) -> Roughness {
-        Roughness::new(self.float(&desc.u), self.float(&desc.v), desc.remap)
+        let distribution = match desc.distribution {
+            DistributionDesc::Ggx => Distribution::Ggx,
+            DistributionDesc::Beckmann => Distribution::Beckmann,
+        };
+        Roughness::new(self.float(&desc.u), self.float(&desc.v), desc.remap, distribution)
     }
 
     fn compile(&self, desc: &SpectrumDesc, usage: SpectrumUse) -> CompiledSpectrum {

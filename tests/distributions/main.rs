@@ -5,6 +5,8 @@ mod common;
 
 mod bsdfs;
 mod cameras;
+mod energy;
+mod kinds;
 mod light_samplers;
 mod lights;
 

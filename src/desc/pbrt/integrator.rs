@@ -2,7 +2,8 @@
 
 use super::reader::{ParamReader, unknown_type};
 use crate::desc::{
-    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy, Termination,
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
+    Termination,
 };
 
 const DEFAULT_MAX_DEPTH: i32 = 5;
@@ -70,7 +71,11 @@ fn path(reader: &mut ParamReader<'_>) -> PathDesc {
         let message = "regularization is not supported";
         reader.report().unsupported(span, message, "it is left out");
     }
-    let strategies = [("mis", Strategy::Mis), ("bsdf", Strategy::Bsdf), ("light", Strategy::Light)];
+    let strategies = [
+        ("mis", Strategy::Mis),
+        ("bsdf", Strategy::Bsdf),
+        ("light", Strategy::Light),
+    ];
     let heuristics = [("power", Heuristic::Power), ("balance", Heuristic::Balance)];
     PathDesc {
         strategy: one_of(reader, "strategy", &strategies),
@@ -88,7 +93,10 @@ fn kajiya(reader: &mut ParamReader<'_>, max_depth: Option<u32>) -> KajiyaDesc {
         |alpha| (0.05..=0.95).contains(&alpha),
         "between 0.05 and 0.95",
     ) as f32;
-    let terminations = [("constant", Termination::Constant(alpha)), ("albedo", Termination::Albedo)];
+    let terminations = [
+        ("constant", Termination::Constant(alpha)),
+        ("albedo", Termination::Albedo),
+    ];
     let distributions = [
         ("bsdf", Distribution::Bsdf),
         ("cosine", Distribution::Cosine),

@@ -5,7 +5,7 @@ use super::files::Context;
 use super::film;
 use super::integrator;
 use super::params::Param;
-use super::reader::{ParamReader, unknown_type};
+use super::reader::ParamReader;
 use super::report::Report;
 use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MotionDesc, SamplerDesc, ViewDesc};
 use crate::error::Span;
