@@ -6,7 +6,7 @@
 //! scene file -> SceneDesc -> Scene(backend) + View -> Integrator -> Film -> image file
 //!   desc/                     scene/                  integrator/   film/   image_io/
 //!                               |  accel/ (Embree | BVH), by packets of rays
-//!                               |  material/  light/  camera/
+//!                               |  material/  light/  camera/  texture/
 //! ```
 //!
 //! Imports go upward only in this list; modules on one line do not import each other (`tests/architecture.rs` checks it):
@@ -14,11 +14,12 @@
 //! 1. [`error`] [`math`]
 //! 2. [`sampling`] [`spectrum`] [`image_io`]
 //! 3. [`desc`] [`geometry`]
-//! 4. [`accel`]
-//! 5. [`material`] [`light`] [`camera`] [`film`]
-//! 6. [`scene`]
-//! 7. [`integrator`]
-//! 8. [`cli`] and `main`
+//! 4. [`texture`]
+//! 5. [`accel`]
+//! 6. [`material`] [`light`] [`camera`] [`film`]
+//! 7. [`scene`]
+//! 8. [`integrator`]
+//! 9. [`cli`] and `main`
 //!
 //! An integrator sees a scene, a view and a film: never a file format, never Embree. An [`accel`] backend answers "which
 //! primitive, at what distance" and knows no material and no light.
@@ -52,5 +53,6 @@ pub mod math;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;
+pub mod texture;
 
 pub use error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Cameras: from a point of the film, of the lens and of time to a ray.
 
-use crate::geometry::Ray;
+use crate::geometry::{Ray, RayCone};
 use crate::math::{AnimatedTransform, DAffine3, Vec2, Vec3};
 use crate::sampling::warp;
 
@@ -143,6 +143,29 @@ impl Camera {
             None => CameraFrame::new(&self.world_from_camera.at(time)),
         };
         Ray::new(frame.point(origin), frame.vector(direction).normalize(), time)
+    }
+}
+
+impl Camera {
+    /// How wide the ray through the point `film` (see [`CameraSample::film`]) is, if it stands for a square of `scale` pixels a
+    /// side. The lens does not matter: what is out of focus is filtered by its rays.
+    #[inline]
+    pub fn ray_cone(&self, film: Vec2, scale: f32) -> RayCone {
+        let pixel = scale * (self.screen_per_pixel.x * self.screen_per_pixel.y).abs().sqrt();
+        if !self.perspective {
+            return RayCone {
+                width: pixel,
+                spread: 0.0,
+            };
+        }
+        // A pixel's solid angle is its area on the plane at distance 1 times the cube of the cosine.
+        let screen = self.screen_origin + film * self.screen_per_pixel;
+        let cos = 1.0 / (1.0 + screen.length_squared()).sqrt();
+        let spread = pixel * cos * cos.sqrt();
+        RayCone {
+            width: spread * self.near_clip / cos,
+            spread,
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Materials and the spectra that they and the lights are given.
 
+use super::Textured;
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -19,7 +20,7 @@ pub enum MaterialKind {
     /// Lambertian reflection.
     Diffuse {
         /// Albedo; default 0.5.
-        reflectance: SpectrumDesc,
+        reflectance: Textured<SpectrumDesc>,
     },
     /// A metal.
     Conductor {
@@ -43,21 +44,21 @@ pub enum ConductorDesc {
     /// By the complex index of refraction eta + i k; the default is copper (`metal-Cu-eta`, `metal-Cu-k`).
     Ior {
         /// Real part.
-        eta: SpectrumDesc,
+        eta: Textured<SpectrumDesc>,
         /// Imaginary part.
-        k: SpectrumDesc,
+        k: Textured<SpectrumDesc>,
     },
     /// By the reflectance r at normal incidence: eta is 1 and k is 2 sqrt(r / (1 - r)), with r at most 0.9999, as in pbrt-v4.
-    Reflectance(SpectrumDesc),
+    Reflectance(Textured<SpectrumDesc>),
 }
 
 /// The roughness of a GGX microfacet surface, along the two tangent directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RoughnessDesc {
     /// Along dp/du; not negative. 0 for both is a smooth surface.
-    pub u: f32,
+    pub u: Textured<f32>,
     /// Along dp/dv; not negative.
-    pub v: f32,
+    pub v: Textured<f32>,
     /// Whether the values are pbrt's perceptual roughness, of which alpha is the square root (the default); if not, they are
     /// alpha itself.
     pub remap: bool,

@@ -15,10 +15,14 @@
 
 mod bytes;
 mod light;
+mod light_kinds;
 mod material;
+mod parameter;
 pub mod pbrt;
 pub mod ply;
 mod shape;
+mod texture;
+mod texture_kinds;
 mod view;
 
 use std::path::Path;
@@ -29,13 +33,17 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
 pub use light::{AreaLightDesc, LightDesc, LightKind};
+pub use light_kinds::{LIGHTS, LightEntry};
 pub use material::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
+pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
+pub use texture::{ClassedTexture, TextureClass, TextureDesc, TextureId, TextureKind, Textured};
+pub use texture_kinds::{TEXTURES, TextureEntry};
 pub use view::{CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, ViewDesc};
 
 /// A whole scene, as its file describes it.
 ///
-/// Every index in it ([`MaterialId`], [`ObjectId`], the vertex indices of meshes) is in range, every number finite, every transform
+/// Every index in it ([`MaterialId`], [`TextureId`], [`ObjectId`], the vertex indices of meshes) is in range, every number finite, every transform
 /// invertible.
 #[derive(Clone, Debug)]
 pub struct SceneDesc {
@@ -47,6 +55,8 @@ pub struct SceneDesc {
     pub integrator: IntegratorDesc,
     /// What [`MaterialId`] counts. The first is pbrt's default, a diffuse reflectance of 0.5.
     pub materials: Vec<MaterialDesc>,
+    /// What [`TextureId`] counts.
+    pub textures: Vec<TextureDesc>,
     /// The shapes that stand in the world themselves, in file order.
     pub shapes: Vec<ShapeDesc>,
     /// Groups of shapes that are seen only through instances; what [`ObjectId`] counts.

@@ -9,7 +9,7 @@ mod world;
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket};
 pub use sphere::{Sphere, SphereHits};
-pub use surface::{Hit, LEAST_ERROR, SurfaceInteraction, triangle_error};
+pub use surface::{Hit, LEAST_ERROR, RayCone, SurfaceInteraction, triangle_error};
 pub use world::{Geometry, Group, Instance, Opacity, Shape, World, WorldBuilder};
 
 macro_rules! index_newtype {

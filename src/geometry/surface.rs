@@ -42,8 +42,15 @@ pub struct SurfaceInteraction {
     pub ns: Vec3,
     /// Derivative of the position by the first texture coordinate, not normalised; may be zero.
     pub dpdu: Vec3,
+    /// Derivative of the position by the second texture coordinate; zero where `dpdu` is.
+    pub dpdv: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Back along the ray, of the length of its direction.
+    pub wo: Vec3,
+    /// Width of the ray's [cone](RayCone) at the point: how much of the surface one sample stands for, across the ray. 0, as
+    /// [`World::interaction`] leaves it, asks for the finest detail of textures.
+    pub footprint: f32,
     /// Scene time of the ray.
     pub time: f32,
     /// What was hit.
@@ -77,6 +84,29 @@ impl SurfaceInteraction {
 /// bright.
 const FAR_GAP: f32 = 1e-6;
 
+/// How wide a path's ray is taken to be, for the filtering of textures: a cone around it (Akenine-Möller et al. 2019, "Texture
+/// Level of Detail Strategies for Real-Time Ray Tracing"). Scattering does not change how it widens, so that its width is that of
+/// a pixel seen over the whole length of the path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RayCone {
+    /// At the ray's origin, in scene units.
+    pub width: f32,
+    /// Growth over a unit of distance.
+    pub spread: f32,
+}
+
+impl RayCone {
+    /// The cone from the point at distance `t` on.
+    #[inline]
+    #[must_use]
+    pub fn after(self, t: f32) -> Self {
+        Self {
+            width: self.width + self.spread * t,
+            ..self
+        }
+    }
+}
+
 /// A surface point in the space of its group.
 struct LocalSurface {
     p: DVec3,
@@ -88,6 +118,7 @@ struct LocalSurface {
     /// Of any length but 0.
     ns: Vec3,
     dpdu: Vec3,
+    dpdv: Vec3,
     uv: Vec2,
 }
 
@@ -99,11 +130,7 @@ impl World {
         let shape = &self.geometry(hit.geometry).shape;
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let Some(id) = hit.instance else {
-            return finish(
-                &local_surface(shape, hit.primitive, origin, direction, ray),
-                ray.time,
-                hit,
-            );
+            return finish(&local_surface(shape, hit.primitive, origin, direction, ray), ray, hit);
         };
         let motion = &self.instance(id).world_from_object;
         let (world_from_object, object_from_world) = (motion.at(ray.time), motion.inverse_at(ray.time));
@@ -112,7 +139,7 @@ impl World {
         let local = local_surface(shape, hit.primitive, origin, direction, ray);
         finish(
             &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
-            ray.time,
+            ray,
             hit,
         )
     }
@@ -125,7 +152,7 @@ fn local_surface(shape: &Shape, primitive: PrimitiveId, origin: DVec3, direction
     }
 }
 
-fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
+fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
     let ng = local.ng.as_vec3();
     SurfaceInteraction {
         p: local.p.as_vec3(),
@@ -134,8 +161,11 @@ fn finish(local: &LocalSurface, time: f32, hit: Hit) -> SurfaceInteraction {
         ng,
         ns: local.ns.try_normalize().unwrap_or(ng),
         dpdu: local.dpdu,
+        dpdv: local.dpdv,
         uv: local.uv,
-        time,
+        wo: -ray.direction,
+        footprint: 0.0,
+        time: ray.time,
         hit,
     }
 }
@@ -164,6 +194,7 @@ fn to_world(
         ng: ng * shrink,
         ns: normal(local.ns.as_dvec3()).normalize_or_zero().as_vec3(),
         dpdu: world_from_object.transform_vector3(local.dpdu.as_dvec3()).as_vec3(),
+        dpdv: world_from_object.transform_vector3(local.dpdv.as_dvec3()).as_vec3(),
         ..*local
     }
 }
@@ -238,13 +269,16 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
     if ns == Vec3::ZERO {
         ns = ng.as_vec3();
     }
-    let (uv, dpdu) = match mesh.uvs() {
+    let (uv, [dpdu, dpdv]) = match mesh.uvs() {
         // Without coordinates: (0, 0), (1, 0), (1, 1).
-        None => (Vec2::new(weights[1] + weights[2], weights[2]), e1.as_vec3()),
+        None => (
+            Vec2::new(weights[1] + weights[2], weights[2]),
+            [e1.as_vec3(), (e2 - e1).as_vec3()],
+        ),
         Some(uvs) => {
             let uvs = corners.map(|v| uvs[v]);
             let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
-            (uv, triangle_dpdu(e1.as_vec3(), e2.as_vec3(), &uvs))
+            (uv, triangle_derivatives(e1.as_vec3(), e2.as_vec3(), &uvs))
         }
     };
     let t = (p - origin).dot(direction) / direction.length_squared();
@@ -255,6 +289,7 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
         ng,
         ns,
         dpdu,
+        dpdv,
         uv,
     }
 }
@@ -267,14 +302,15 @@ fn clamp_barycentrics(v: f64, w: f64) -> (f64, f64) {
     if sum > 1.0 { (v / sum, w / sum) } else { (v, w) }
 }
 
-/// Solves dp = dpdu du + dpdv dv along two edges; zero where the texture coordinates are degenerate.
-fn triangle_dpdu(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> Vec3 {
+/// Solves dp = dpdu du + dpdv dv along two edges for dpdu and dpdv; zero where the texture coordinates are degenerate.
+fn triangle_derivatives(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> [Vec3; 2] {
     let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = d1.perp_dot(d2);
     if determinant == 0.0 {
-        Vec3::ZERO
+        [Vec3::ZERO; 2]
     } else {
-        (e1 * d2.y - e2 * d1.y) / determinant
+        let inverse = 1.0 / determinant;
+        [(e1 * d2.y - e2 * d1.y) * inverse, (e2 * d1.x - e1 * d2.x) * inverse]
     }
 }
 
@@ -300,6 +336,11 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         ((std::f64::consts::PI - unit.z.clamp(-1.0, 1.0).acos()) / std::f64::consts::PI) as f32,
     );
     let dpdu = world.transform_vector3(DVec3::new(-unit.y, unit.x, 0.0) * sphere.radius() * std::f64::consts::TAU);
+    // v goes from the south pole to the north pole.
+    let from_axis = unit.truncate().length();
+    let azimuth = unit.truncate() / from_axis.max(f64::MIN_POSITIVE);
+    let along = (azimuth * -unit.z).extend(from_axis);
+    let dpdv = world.transform_vector3(along * sphere.radius() * std::f64::consts::PI);
     LocalSurface {
         p,
         // The test that a backend makes is in double precision.
@@ -308,6 +349,7 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         ng,
         ns: ng.as_vec3(),
         dpdu: dpdu.as_vec3(),
+        dpdv: dpdv.as_vec3(),
         uv,
     }
 }

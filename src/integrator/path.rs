@@ -29,7 +29,9 @@ impl PathIntegrator {
             add_environment(stage, lane, ray);
             return None;
         };
-        let si = stage.scene.world().interaction(ray, hit);
+        let mut si = stage.scene.world().interaction(ray, hit);
+        let cone = lane.cone.after(si.t);
+        si.footprint = cone.width;
         let wo = -ray.direction;
         add_emission(stage, lane, &si, wo);
         if self.max_depth == Some(stage.depth) {
@@ -59,6 +61,7 @@ impl PathIntegrator {
                 Density::Delta(_) => Origin::Delta,
                 Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
+            cone,
         };
         let survival = self.survival(stage.depth, &next);
         if survival < 1.0 {

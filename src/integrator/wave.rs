@@ -17,7 +17,7 @@ use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
-use crate::geometry::{HitPacket, LANES, Ray, RayPacket};
+use crate::geometry::{HitPacket, LANES, Ray, RayCone, RayPacket};
 use crate::math::{Vec2, Vec3};
 use crate::sampling::{SampleStream, SolidAnglePdf};
 use crate::scene::{Scene, View};
@@ -72,6 +72,8 @@ pub(super) struct Lane {
     pub eta_scale: f32,
     /// Where the ray came from.
     pub origin: Origin,
+    /// How wide the ray is.
+    pub cone: RayCone,
 }
 
 impl Lane {
@@ -182,9 +184,11 @@ impl<'a> Wave<'a> {
                 beta: SampledSpectrum::ONE,
                 eta_scale: 1.0,
                 origin: Origin::Delta,
+                cone: RayCone::default(),
             };
             if traced.contains(x, y) {
-                let (mut slot, ray) = camera_slot(self.scene, self.view, [x, y], sample);
+                let (mut slot, ray, cone) = camera_slot(self.scene, self.view, [x, y], sample);
+                lane.cone = cone;
                 if ray.is_valid() {
                     packet.set(i, &ray);
                     self.stats.camera_rays += 1;
@@ -280,8 +284,8 @@ impl<'a> Wave<'a> {
     }
 }
 
-/// A pixel sample and its camera ray.
-fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slot, Ray) {
+/// A pixel sample, its camera ray and how wide that is.
+fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slot, Ray, RayCone) {
     let stream = view
         .sampler
         .start(pixel[0].cast_signed(), pixel[1].cast_signed(), sample);
@@ -289,11 +293,13 @@ fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slo
     let [u_lambda, u_time] = stream.draw2(DETECTOR_GROUP);
     let filter = view.filter.sample(Vec2::new(film_x, film_y));
     let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-    let ray = view.camera.sample_ray(&CameraSample {
+    let camera_sample = CameraSample {
         film: center + filter.offset,
         lens: Vec2::new(lens_x, lens_y),
         time: u_time,
-    });
+    };
+    let ray = view.camera.sample_ray(&camera_sample);
+    let cone = view.camera.ray_cone(camera_sample.film, view.detail_scale());
     let lambda = match scene.color() {
         ColorMode::Spectral => Wavelengths::sample_visible(u_lambda),
         ColorMode::Rgb => Wavelengths::rgb(),
@@ -307,5 +313,5 @@ fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slo
         l: SampledSpectrum::ZERO,
         broken: false,
     };
-    (slot, ray)
+    (slot, ray, cone)
 }

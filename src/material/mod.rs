@@ -8,6 +8,7 @@ mod dielectric;
 mod diffuse;
 mod fresnel;
 mod microfacet;
+mod roughness;
 
 pub use bsdf::{Bsdf, BsdfSample, Density, LocalSample, TransportMode};
 pub use conductor::Conductor;
@@ -15,10 +16,12 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use fresnel::{fresnel_complex, fresnel_dielectric, refract};
 pub use microfacet::Ggx;
+pub use roughness::Roughness;
 
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+use crate::texture::SpectrumTexture;
 
 use bsdf::Lobe;
 
@@ -28,21 +31,21 @@ pub enum Material {
     /// Lambertian reflection on both sides.
     Diffuse {
         /// Albedo, in [0, 1].
-        reflectance: CompiledSpectrum,
+        reflectance: SpectrumTexture,
     },
     /// A metal, smooth or rough, on both sides.
     Conductor {
         /// What it reflects.
         ior: ConductorIor,
-        /// Microfacet slopes; `None` is smooth.
-        roughness: Option<Ggx>,
+        /// How rough it is.
+        roughness: Roughness,
     },
     /// The boundary of a transparent body, smooth or rough.
     Dielectric {
         /// Index of refraction inside over that outside.
         eta: CompiledSpectrum,
-        /// Microfacet slopes; `None` is smooth.
-        roughness: Option<Ggx>,
+        /// How rough it is.
+        roughness: Roughness,
     },
 }
 
@@ -52,60 +55,60 @@ pub enum ConductorIor {
     /// n + i k.
     Measured {
         /// n.
-        eta: CompiledSpectrum,
+        eta: SpectrumTexture,
         /// k.
-        k: CompiledSpectrum,
+        k: SpectrumTexture,
     },
     /// The reflectance at normal incidence, from which n = 1 and k follow, as in pbrt-v4.
-    Reflectance(CompiledSpectrum),
+    Reflectance(SpectrumTexture),
 }
 
 impl Material {
     /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf {
-        let frame = if self.is_anisotropic() {
+        let (lobe, is_anisotropic) = self.lobe(si, lambda);
+        let frame = if is_anisotropic {
             Frame::from_normal_tangent(si.ns, si.dpdu)
         } else {
             Frame::from_normal(si.ns)
         };
-        Bsdf::new(frame, self.lobe(lambda))
+        Bsdf::new(frame, lobe)
     }
 
-    /// Whether it matters which way the tangent points.
-    fn is_anisotropic(&self) -> bool {
+    /// The lobe, and whether it matters which way the tangent points.
+    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe, bool) {
+        let is_anisotropic = |ggx: Option<Ggx>| ggx.is_some_and(|ggx| !ggx.is_isotropic());
         match self {
-            Self::Diffuse { .. } => false,
-            Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => {
-                roughness.is_some_and(|ggx| !ggx.is_isotropic())
+            Self::Diffuse { reflectance } => {
+                let albedo = reflectance.reflectance_at(si, lambda);
+                (Lobe::Diffuse(Diffuse::new(albedo)), false)
             }
-        }
-    }
-
-    fn lobe(&self, lambda: &mut Wavelengths) -> Lobe {
-        match self {
-            Self::Diffuse { reflectance } => Lobe::Diffuse(Diffuse::new(reflectance.sample(lambda))),
             Self::Conductor { ior, roughness } => {
-                let (eta, k) = ior.sample(lambda);
-                Lobe::Conductor(Conductor::new(eta, k, *roughness))
+                let ((eta, k), ggx) = (ior.at(si, lambda), roughness.at(si));
+                (Lobe::Conductor(Conductor::new(eta, k, ggx)), is_anisotropic(ggx))
             }
             Self::Dielectric { eta, roughness } => {
                 if !eta.is_constant_over_wavelengths() {
                     lambda.terminate_secondary();
                 }
-                Lobe::Dielectric(Dielectric::new(eta.sample(lambda).0[0], *roughness))
+                let ggx = roughness.at(si);
+                (
+                    Lobe::Dielectric(Dielectric::new(eta.sample(lambda).0[0], ggx)),
+                    is_anisotropic(ggx),
+                )
             }
         }
     }
 }
 
 impl ConductorIor {
-    fn sample(&self, lambda: &Wavelengths) -> (SampledSpectrum, SampledSpectrum) {
+    fn at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> (SampledSpectrum, SampledSpectrum) {
         match self {
-            Self::Measured { eta, k } => (eta.sample(lambda), k.sample(lambda)),
+            Self::Measured { eta, k } => (eta.at(si, lambda), k.at(si, lambda)),
             Self::Reflectance(r) => {
                 // With n = 1, R = k² / (4 + k²) at normal incidence.
-                let r = r.sample(lambda).map(|r| r.clamp(0.0, 0.9999));
+                let r = r.at(si, lambda).map(|r| r.clamp(0.0, 0.9999));
                 (SampledSpectrum::ONE, r.map(|r| 2.0 * (r / (1.0 - r)).sqrt()))
             }
         }

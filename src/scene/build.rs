@@ -3,21 +3,19 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::lights::LightBuilder;
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
+use super::textures::{SpectrumUse, TextureCompiler};
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
 use crate::desc::{
-    AreaLightDesc, ConductorDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, MaterialDesc, MaterialKind,
-    RoughnessDesc, SceneDesc, ShapeDesc,
+    AreaLightDesc, ConductorDesc, IntegratorDesc, LightSamplerKind, MaterialDesc, MaterialKind, SceneDesc, ShapeDesc,
 };
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
-use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
-use crate::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
-};
-use crate::material::{ConductorIor, Ggx, Material};
-use crate::math::DVec3;
+use crate::geometry::{Geometry, GeometryId, Group, Instance, WorldBuilder};
+use crate::light::{LightId, LightSampler};
+use crate::material::{ConductorIor, Material};
 
 /// What is collected while shapes and lights are gone through.
 struct SceneBuilder<'a> {
@@ -25,8 +23,7 @@ struct SceneBuilder<'a> {
     spectra: SpectrumCompiler,
     world: WorldBuilder,
     surfaces: Vec<Surface>,
-    lights: Vec<Light>,
-    environments: Vec<LightId>,
+    lights: LightBuilder,
     problems: Vec<Diagnostic>,
 }
 
@@ -41,20 +38,24 @@ impl Scene {
             spectra: SpectrumCompiler { mode: options.color },
             world: WorldBuilder::default(),
             surfaces: Vec::new(),
-            lights: Vec::new(),
-            environments: Vec::new(),
+            lights: LightBuilder::new(options.color),
             problems: Vec::new(),
         };
         builder.add_shapes();
         builder.add_objects();
-        desc.lights.iter().for_each(|light| builder.add_light(light));
+        for light in &desc.lights {
+            if let Err(message) = builder.lights.add(light) {
+                builder.problem(light.span, message);
+            }
+        }
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
+        let mut textures = TextureCompiler::new(&desc.textures, builder.spectra);
         let materials = desc
             .materials
             .iter()
-            .map(|material| builder.material(material))
+            .map(|desc| material(&mut textures, desc))
             .collect();
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
@@ -63,9 +64,9 @@ impl Scene {
         let build_seconds = start.elapsed().as_secs_f64();
         let IntegratorDesc::Path { light_sampler, .. } = desc.integrator;
         let light_sampler = match light_sampler {
-            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
-            LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
-            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),
+            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
+            LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
+            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights.lights),
         };
         Ok(Self {
             world,
@@ -74,8 +75,8 @@ impl Scene {
             bounds,
             materials,
             surfaces: builder.surfaces,
-            lights: builder.lights,
-            environments: builder.environments,
+            lights: builder.lights.lights,
+            environments: builder.lights.environments,
             light_sampler,
             build_seconds,
         })
@@ -156,130 +157,31 @@ impl SceneBuilder<'_> {
 
     /// One light for each primitive that has an area.
     fn add_area_lights(&mut self, desc: &AreaLightDesc, geometry: &Geometry, moves: bool) -> Vec<Option<LightId>> {
-        let emitters = match &geometry.shape {
-            _ if moves => Err("an area light on a moving shape is not supported yet"),
-            Shape::Mesh(mesh) => triangle_emitters(mesh),
-            Shape::Spheres(spheres) => spheres
-                .iter()
-                .map(|sphere| {
-                    let scale = uniform_scale(&sphere.world_from_object().matrix3);
-                    let radius = sphere.radius() * scale.ok_or("an area light on an ellipsoid is not supported")?;
-                    Ok(EmitterShape::Sphere {
-                        center: sphere.center(),
-                        radius,
-                        inward: sphere.has_flipped_normal(),
-                    })
-                })
-                .collect(),
-        };
-        let emitters = match emitters {
-            Ok(emitters) => emitters,
-            Err(message) => {
-                self.problem(desc.span, message);
-                return Vec::new();
-            }
-        };
-        let radiance = self.spectra.emission(desc.l.as_ref());
-        let add = |emitter| {
-            let light = AreaLight::new(emitter, radiance.scaled(desc.scale), desc.two_sided)?;
-            // As in pbrt-v4 the power is that of each light: of one triangle.
-            let light = match desc.power {
-                Some(power) => {
-                    let geometric = light.sides() * std::f32::consts::PI * light.area();
-                    light.scaled(power / geometric)
-                }
-                None => light,
-            };
-            self.lights.push(Light::Area(light));
-            Some(LightId(self.lights.len() as u32 - 1))
-        };
-        emitters.into_iter().map(add).collect()
-    }
-
-    fn add_light(&mut self, desc: &LightDesc) {
-        if !desc.world_from_light.is_static() {
-            self.problem(desc.span, "a moving light is not supported yet");
-            return;
-        }
-        let world_from_light = desc.world_from_light.start;
-        // pbrt-v4: a photometric value replaces the luminance, the scale stays a factor.
-        let scale = |geometric: f32| desc.scale * desc.photometric.map_or(1.0, |value| value / geometric);
-        let spectrum = self.spectra.emission(desc.spectrum.as_ref());
-        let pi = std::f32::consts::PI;
-        let light = match desc.kind {
-            LightKind::Point { from } => {
-                let position = world_from_light.transform_point3(from).as_vec3();
-                Light::Point(PointLight::new(
-                    Place::at_point(position),
-                    spectrum.scaled(scale(4.0 * pi)),
-                ))
-            }
-            LightKind::Distant { from, to } => {
-                let towards = world_from_light.transform_vector3(from - to).normalize();
-                Light::Distant(DistantLight::new(
-                    Place::facing(DVec3::ZERO, towards),
-                    spectrum.scaled(scale(1.0)),
-                ))
-            }
-            LightKind::Infinite => {
-                self.environments.push(LightId(self.lights.len() as u32));
-                Light::Environment(EnvironmentLight::Constant(spectrum.scaled(scale(pi))))
-            }
-        };
-        self.lights.push(light);
-    }
-
-    fn material(&self, desc: &MaterialDesc) -> Material {
-        match &desc.kind {
-            MaterialKind::Diffuse { reflectance } => Material::Diffuse {
-                reflectance: self.spectra.albedo(reflectance),
-            },
-            MaterialKind::Conductor { interface, roughness } => Material::Conductor {
-                ior: match interface {
-                    ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
-                        eta: self.spectra.metal_index(eta),
-                        k: self.spectra.metal_index(k),
-                    },
-                    ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(self.spectra.albedo(r)),
-                },
-                roughness: microfacets(*roughness),
-            },
-            MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
-                eta: self.spectra.glass_index(eta),
-                roughness: microfacets(*roughness),
-            },
-        }
-    }
-}
-
-fn microfacets(roughness: RoughnessDesc) -> Option<Ggx> {
-    let alpha = |r: f32| {
-        if roughness.remap {
-            Ggx::alpha_from_roughness(r)
-        } else {
-            r
-        }
-    };
-    Ggx::new(alpha(roughness.u), alpha(roughness.v))
-}
-
-fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {
-    if mesh.is_moving() {
-        return Err("an area light on a moving mesh is not supported yet");
-    }
-    Ok((0..mesh.triangle_count())
-        .map(|triangle| EmitterShape::Triangle {
-            vertices: mesh.triangle(triangle, 0.0),
-            ng: mesh.geometric_normal(triangle),
+        self.lights.add_area(desc, geometry, moves).unwrap_or_else(|message| {
+            self.problem(desc.span, message);
+            Vec::new()
         })
-        .collect())
+    }
 }
 
-/// The factor of a rotation with uniform scale; `None` for any other matrix.
-fn uniform_scale(m: &crate::math::DMat3) -> Option<f64> {
-    let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-    let scale = lengths.x;
-    let orthogonal = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
-    let uniform = (lengths - DVec3::splat(scale)).abs().max_element() <= 1e-6 * scale;
-    (uniform && orthogonal.iter().all(|d| d.abs() <= 1e-6 * scale * scale)).then_some(scale)
+fn material(textures: &mut TextureCompiler<'_>, desc: &MaterialDesc) -> Material {
+    match &desc.kind {
+        MaterialKind::Diffuse { reflectance } => Material::Diffuse {
+            reflectance: textures.spectrum(reflectance, SpectrumUse::Albedo),
+        },
+        MaterialKind::Conductor { interface, roughness } => Material::Conductor {
+            ior: match interface {
+                ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
+                    eta: textures.spectrum(eta, SpectrumUse::Unbounded),
+                    k: textures.spectrum(k, SpectrumUse::Unbounded),
+                },
+                ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(textures.spectrum(r, SpectrumUse::Albedo)),
+            },
+            roughness: textures.roughness(roughness),
+        },
+        MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
+            eta: textures.spectra.glass_index(eta),
+            roughness: textures.roughness(roughness),
+        },
+    }
 }

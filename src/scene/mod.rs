@@ -2,8 +2,10 @@
 //! outlives renders and serves many [`View`]s.
 
 mod build;
+mod lights;
 mod shapes;
 mod spectra;
+mod textures;
 mod view;
 
 use std::sync::Arc;

@@ -90,6 +90,12 @@ impl View {
         })
     }
 
+    /// How much finer than a pixel textures are filtered, as many samples together see the pixel: 1 / sqrt(samples), at least 1/8,
+    /// as in pbrt-v4. It is that of all samples that are planned, whichever of them are rendered.
+    pub fn detail_scale(&self) -> f32 {
+        (1.0 / (self.sampler.samples_per_pixel() as f32).sqrt()).max(0.125)
+    }
+
     /// An empty film for it.
     pub fn film(&self) -> Film {
         Film::new(self.resolution, self.crop)

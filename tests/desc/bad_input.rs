@@ -240,8 +240,8 @@ fn spectra() {
             "",
         ),
         (
-            "WorldBegin Material \"diffuse\" @\"texture reflectance\" \"wood\"",
-            "textures are not supported",
+            "WorldBegin Material \"diffuse\" \"texture reflectance\" @\"wood\"",
+            "no spectrum texture `wood`",
             "",
         ),
         (
@@ -341,8 +341,8 @@ fn entities() {
         ("PixelFilter @\"gausian\" WorldBegin", "unknown filter", "`gaussian`"),
         ("ColorSpace @\"rec2020\" WorldBegin", "not supported yet", ""),
         (
-            "WorldBegin @Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"x\"",
-            "textures",
+            "WorldBegin Texture \"a\" \"spectrum\" @\"ptex\" \"string filename\" \"x\"",
+            "spectrum texture `ptex` is not supported yet",
             "",
         ),
         (
@@ -549,9 +549,9 @@ fn lenient_reading_turns_the_unknown_into_warnings() {
         Sampler "new" Integrator "bdpt" PixelFilter "new" Camera "spherical"
         ColorSpace "rec2020"
         WorldBegin
-        Texture "a" "spectrum" "imagemap" "string filename" "x"
+        Texture "a" "spectrum" "ptex" "string filename" "x"
         MakeNamedMedium "m" "string type" "homogeneous" MediumInterface "m"
-        Material "diffuse" "texture reflectance" "a"
+        Material "diffuse" "texture reflectance" "b"
         Material "coateddiffuse" "float thickness" 3
         Shape "sphere" "float what" 3 "float zmin" 0
         Shape "disk"
@@ -585,4 +585,102 @@ fn warnings_are_capped_too() {
     let warnings = scene(&text).warnings;
     assert_eq!(warnings.len(), 50);
     assert_eq!(warnings[49].help.as_deref(), Some("30 more warnings are not shown"));
+}
+
+#[test]
+fn textures() {
+    let cases: [Case; 14] = [
+        (
+            "WorldBegin Texture \"a\" @\"color\" \"constant\"",
+            "`float` or `spectrum`, not `color`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" @\"mixx\"",
+            "unknown float texture `mixx`",
+            "`mix`",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"constant\" Texture @\"a\" \"float\" \"constant\"",
+            "already",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"constant\" @\"rgb value\" [1 1 1]",
+            "has the type `rgb`, expected `float`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"spectrum\" \"constant\" @\"float value\" 1",
+            "has the type `float`, expected `rgb`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"scale\" @\"float amount\" 1",
+            "float texture `scale` has no parameter `amount`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"scale\" \"texture tex\" @\"b\" Texture \"b\" \"float\" \"constant\"",
+            "defined before it",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"scale\" \"texture tex\" @\"a\"",
+            "defined before it",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"directionmix\" @\"vector3 dir\" [0 0 0]",
+            "must not be zero",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"wood\" \"spectrum\" \"constant\" Material \"diffuse\" \"texture reflectance\" @\"wod\"",
+            "no spectrum texture `wod`",
+            "`wood`",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"constant\" Material \"diffuse\" \"texture reflectance\" @\"a\"",
+            "no spectrum texture `a`",
+            "there is a float texture of that name",
+        ),
+        (
+            "WorldBegin Material \"diffuse\" \"texture reflectance\" @[\"a\" \"b\"]",
+            "takes 1 value, found 2",
+            "",
+        ),
+        (
+            "@Texture \"a\" \"float\" \"constant\" WorldBegin",
+            "only after `WorldBegin`",
+            "",
+        ),
+        (
+            "WorldBegin Material \"conductor\" \"float roughness\" @-1",
+            "must be 0 or more",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn textures_may_not_be_stacked_without_end() {
+    let chain = |n: usize| {
+        let mut text = "WorldBegin Texture \"t0\" \"float\" \"constant\"\n".to_owned();
+        for i in 1..n {
+            text += &format!("Texture \"t{i}\" \"float\" \"scale\" \"texture tex\" \"t{}\"\n", i - 1);
+        }
+        text
+    };
+    assert_eq!(scene(&chain(64)).textures.len(), 64);
+    let errors = errors(&chain(65));
+    assert_eq!((errors.len(), errors[0].line), (1, 65), "{errors:?}");
+    assert!(errors[0].message.contains("more than 64"));
+}
+
+#[test]
+fn a_material_may_name_a_texture_that_is_defined_later() {
+    let later = "WorldBegin Material \"diffuse\" \"texture reflectance\" \"a\" Texture \"a\" \"spectrum\" \"constant\"";
+    assert_eq!(scene(later).textures[0].name, "a");
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use flate2::{Compression, write::GzEncoder};
 use glam::DVec3;
 use lucerna::Error;
-use lucerna::desc::{MaterialKind, SceneDesc, ShapeKind, SpectrumValue, load};
+use lucerna::desc::{MaterialKind, SceneDesc, ShapeKind, SpectrumValue, Textured, load};
 use tempfile::TempDir;
 
 use crate::STRICT;
@@ -145,7 +145,10 @@ fn spectra_come_from_files() {
         ("main.pbrt", main),
         ("grey.spd", "# nm, value\n400 0.25\n700 0.5 # end\n"),
     ]);
-    let MaterialKind::Diffuse { reflectance } = &found.materials[1].kind else {
+    let MaterialKind::Diffuse {
+        reflectance: Textured::Value(reflectance),
+    } = &found.materials[1].kind
+    else {
         panic!()
     };
     assert_eq!(

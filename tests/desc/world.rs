@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat4, DVec3, Vec2, Vec3};
 use lucerna::desc::{
-    ConductorDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc, ShapeDesc, ShapeKind, SpectrumValue,
-    load,
+    ConductorDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    SpectrumValue, Textured, load,
 };
 
 use crate::{STRICT, shared, world};
@@ -97,6 +97,14 @@ fn transforms_may_move() {
     assert!(!scene.shapes[0].world_from_object.is_static() && !scene.lights[0].world_from_light.is_static());
 }
 
+/// The spectrum of a parameter that has no texture.
+fn value(parameter: &Textured<SpectrumDesc>) -> &SpectrumValue {
+    match parameter {
+        Textured::Value(desc) => &desc.value,
+        Textured::Texture(id) => panic!("{id:?}"),
+    }
+}
+
 #[test]
 fn materials_have_the_parameters_of_pbrt() {
     let scene = world(
@@ -112,7 +120,7 @@ fn materials_have_the_parameters_of_pbrt() {
     );
     let kinds: Vec<&MaterialKind> = scene.materials.iter().skip(1).map(|m| &m.kind).collect();
     let reflectance = |i: usize| match kinds[i] {
-        MaterialKind::Diffuse { reflectance } => &reflectance.value,
+        MaterialKind::Diffuse { reflectance } => value(reflectance),
         other => panic!("{other:?}"),
     };
     let samples = SpectrumValue::Samples(vec![(400.0, 0.1), (500.0, 0.25), (700.0, 0.5)]);
@@ -122,11 +130,15 @@ fn materials_have_the_parameters_of_pbrt() {
         MaterialKind::Conductor {
             interface: ConductorDesc::Ior { eta, k },
             roughness,
-        } => (eta.value.clone(), k.value.clone(), *roughness),
+        } => (value(eta).clone(), value(k).clone(), roughness.clone()),
         other => panic!("{other:?}"),
     };
     let named = |name: &str| SpectrumValue::Named(name.to_owned());
-    let rough = |u, v, remap| RoughnessDesc { u, v, remap };
+    let rough = |u, v, remap| RoughnessDesc {
+        u: Textured::Value(u),
+        v: Textured::Value(v),
+        remap,
+    };
     assert_eq!(
         ior(2),
         (named("metal-Cu-eta"), named("metal-Cu-k"), rough(0.0, 0.0, true))
@@ -143,16 +155,16 @@ fn materials_have_the_parameters_of_pbrt() {
         panic!()
     };
     assert_eq!(
-        (&r.value, *roughness),
+        (value(r), roughness.clone()),
         (&SpectrumValue::Rgb([0.1, 0.2, 0.3]), rough(0.5, 0.25, true))
     );
     let eta = |i: usize| match kinds[i] {
-        MaterialKind::Dielectric { eta, roughness } => (eta.value.clone(), roughness.u),
+        MaterialKind::Dielectric { eta, roughness } => (eta.value.clone(), roughness.u.clone()),
         other => panic!("{other:?}"),
     };
-    assert_eq!(eta(5), (SpectrumValue::Constant(1.33), 0.0));
-    assert_eq!(eta(6), (named("glass-BK7"), 0.1));
-    assert_eq!(eta(7), (SpectrumValue::Constant(1.5), 0.0));
+    assert_eq!(eta(5), (SpectrumValue::Constant(1.33), Textured::Value(0.0)));
+    assert_eq!(eta(6), (named("glass-BK7"), Textured::Value(0.1)));
+    assert_eq!(eta(7), (SpectrumValue::Constant(1.5), Textured::Value(0.0)));
 }
 
 #[test]
@@ -276,7 +288,7 @@ fn attribute_sets_defaults_for_what_follows() {
     let MaterialKind::Diffuse { reflectance } = &scene.materials[1].kind else {
         panic!()
     };
-    assert_eq!(reflectance.value, SpectrumValue::Rgb([0.1; 3]));
+    assert_eq!(*value(reflectance), SpectrumValue::Rgb([0.1; 3]));
     // Nothing rough follows.
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
 }

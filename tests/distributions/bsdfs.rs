@@ -41,18 +41,18 @@ impl Kind {
         let index = |value| compile(value, SpectrumRole::Reflectance);
         let material = match self {
             Self::Diffuse => Material::Diffuse {
-                reflectance: index(0.7),
+                reflectance: index(0.7).into(),
             },
             Self::Metal(x, y) => Material::Conductor {
                 ior: ConductorIor::Measured {
-                    eta: index(METAL_N),
-                    k: index(METAL_K),
+                    eta: index(METAL_N).into(),
+                    k: index(METAL_K).into(),
                 },
-                roughness: Ggx::new(x, y),
+                roughness: Ggx::new(x, y).into(),
             },
             Self::Glass(eta, x, y) => Material::Dielectric {
                 eta: compile(eta.into(), SpectrumRole::Ior),
-                roughness: Ggx::new(x, y),
+                roughness: Ggx::new(x, y).into(),
             },
         };
         let surface = SurfaceInteraction {
@@ -62,7 +62,10 @@ impl Kind {
             ng: ns,
             ns,
             dpdu,
+            dpdv: Vec3::ZERO,
             uv: Vec2::ZERO,
+            wo: ns,
+            footprint: 0.0,
             time: 0.0,
             hit: Hit {
                 geometry: GeometryId(0),

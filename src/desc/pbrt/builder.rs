@@ -9,8 +9,8 @@ use super::params::Param;
 use super::reader::{ParamReader, unknown_type};
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
-use super::{light, material, shape};
-use crate::desc::MotionDesc;
+use super::{light, material, shape, texture};
+use crate::desc::{MotionDesc, TextureClass};
 use crate::error::Span;
 
 pub(super) use super::options::OptionKind;
@@ -248,6 +248,40 @@ impl Builder {
         }
     }
 
+    /// `Texture`.
+    pub fn texture(
+        &mut self,
+        (name, name_span): (String, Span),
+        (class, class_span): (&str, Span),
+        (kind, kind_span): (&str, Span),
+        params: Vec<Param>,
+        span: Span,
+    ) {
+        if !self.expect_world("Texture", span) {
+            return;
+        }
+        let class = match class {
+            "float" => TextureClass::Float,
+            "spectrum" => TextureClass::Spectrum,
+            _ => {
+                let message = format!("a texture is of the class `float` or `spectrum`, not `{class}`");
+                return self.context.report.error(class_span, message);
+            }
+        };
+        if self.context.textures.is_defined(class, &name) {
+            let message = format!("there is a {} texture `{name}` already", class.name());
+            return self.context.report.error(name_span, message);
+        }
+        if !self.state.ctm.is_static() {
+            let message = "a texture does not move: the transform at the start holds";
+            self.context.report.warning(span, message);
+        }
+        let defaults = Arc::clone(&self.state.defaults.texture);
+        let what = format!("{} texture", class.name());
+        let reader = ParamReader::new(&mut self.context, &what, kind, kind_span, params, &defaults);
+        texture::read(reader, name, class, kind, self.state.ctm.start);
+    }
+
     fn shape(&mut self, kind: shape::RawKind, span: Span) {
         let in_object = self.world.is_in_object();
         let mut area_light = self.state.area_light.clone();
@@ -276,7 +310,8 @@ impl Builder {
             "shape" => ("shape", &mut defaults.shape),
             "light" => ("light", &mut defaults.light),
             "material" => ("material", &mut defaults.material),
-            "medium" | "texture" => return,
+            "texture" => ("texture", &mut defaults.texture),
+            "medium" => return,
             _ => {
                 let known = ["shape", "light", "material", "medium", "texture"];
                 let message = format!("unknown target `{target}` of `Attribute`");

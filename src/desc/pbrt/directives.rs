@@ -166,11 +166,10 @@ fn dispatch(builder: &mut Builder, lexer: &mut Lexer, word: &str, span: Span) ->
             }
         }
         "Texture" => {
-            arguments(builder, lexer, span).string()?;
-            arguments(builder, lexer, span).string()?;
-            entity(builder, lexer, span)?;
-            let report = &mut builder.context.report;
-            report.unsupported(span, "textures are not supported yet", "it is ignored");
+            let name = arguments(builder, lexer, span).string()?;
+            let (class, class_span) = arguments(builder, lexer, span).string()?;
+            let (kind, kind_span, params) = entity(builder, lexer, span)?;
+            builder.texture(name, (&class, class_span), (&kind, kind_span), params, span);
         }
         _ if is_directive(word.as_bytes()) => {
             let (name, name_span, params) = entity(builder, lexer, span)?;

@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::report::Report;
+use super::texture_names::Textures;
 use crate::desc::{ParseOptions, bytes};
 use crate::error::Span;
 
@@ -11,6 +12,8 @@ use crate::error::Span;
 #[derive(Debug)]
 pub(super) struct Context {
     pub report: Report,
+    /// The textures so far.
+    pub textures: Textures,
     /// Where the main file is.
     directory: PathBuf,
     hasher: blake3::Hasher,
@@ -21,7 +24,7 @@ pub(super) struct Context {
 #[derive(Debug)]
 struct Default {
     span: Span,
-    /// `shape`, `light` or `material`.
+    /// `shape`, `light`, `material` or `texture`.
     target: &'static str,
     name: String,
     /// Whether any entity had a parameter of that name.
@@ -36,6 +39,7 @@ impl Context {
     pub fn new(directory: &Path, options: &ParseOptions) -> Self {
         Self {
             report: Report::new(options),
+            textures: Textures::default(),
             directory: directory.to_owned(),
             hasher: blake3::Hasher::new(),
             defaults: Vec::new(),

@@ -39,6 +39,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
         ..
     } = world;
     let (materials, ids) = resolve_materials(materials.into_slots(), &mut context.report);
+    let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
     let meshes = read_meshes(&meshes, &mut context);
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));
@@ -60,6 +61,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
         views,
         integrator: options.integrator(),
         materials,
+        textures,
         shapes,
         objects,
         instances,

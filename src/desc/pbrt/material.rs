@@ -3,7 +3,7 @@
 use super::reader::{ParamReader, unknown_type};
 use super::spectrum::Use;
 use super::world::default_material;
-use crate::desc::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
+use crate::desc::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue, Textured};
 use crate::error::Span;
 
 const KNOWN: [&str; 4] = ["diffuse", "conductor", "dielectric", "interface"];
@@ -71,28 +71,28 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, span: Option<Span>) 
 
 fn diffuse(reader: &mut ParamReader<'_>) -> MaterialKind {
     MaterialKind::Diffuse {
-        reflectance: or_default(reader, "reflectance", Use::Albedo, SpectrumValue::Constant(0.5)),
+        reflectance: textured_or(reader, "reflectance", Use::Albedo, SpectrumValue::Constant(0.5)),
     }
 }
 
 fn conductor(reader: &mut ParamReader<'_>) -> MaterialKind {
-    let reflectance = reader.spectrum("reflectance", Use::Albedo);
+    let reflectance = reader.spectrum_textured("reflectance", Use::Albedo);
     let interface = match reflectance {
         Some(reflectance) => {
             if reader.has("eta") || reader.has("k") {
                 let span = reader.span_of("reflectance");
                 let message = "a conductor has either `reflectance` or `eta` and `k`";
                 reader.report().error(span, message);
-                reader.spectrum("eta", Use::Ior);
-                reader.spectrum("k", Use::Absorption);
+                reader.spectrum_textured("eta", Use::Ior);
+                reader.spectrum_textured("k", Use::Absorption);
             }
             ConductorDesc::Reflectance(reflectance)
         }
         None => {
             let copper = |part: &str| SpectrumValue::Named(format!("metal-Cu-{part}"));
             ConductorDesc::Ior {
-                eta: or_default(reader, "eta", Use::Ior, copper("eta")),
-                k: or_default(reader, "k", Use::Absorption, copper("k")),
+                eta: textured_or(reader, "eta", Use::Ior, copper("eta")),
+                k: textured_or(reader, "k", Use::Absorption, copper("k")),
             }
         }
     };
@@ -119,15 +119,22 @@ fn dielectric(reader: &mut ParamReader<'_>) -> MaterialKind {
 
 /// `roughness`, overridden by `uroughness` and `vroughness`; smooth by default.
 fn roughness(reader: &mut ParamReader<'_>) -> RoughnessDesc {
-    let both = reader.not_negative("roughness", 0.0);
+    let both = reader.not_negative_textured("roughness", Textured::Value(0.0));
     RoughnessDesc {
-        u: reader.not_negative("uroughness", both) as f32,
-        v: reader.not_negative("vroughness", both) as f32,
+        u: reader.not_negative_textured("uroughness", both.clone()),
+        v: reader.not_negative_textured("vroughness", both),
         remap: reader.boolean("remaproughness", true),
     }
 }
 
-fn or_default(reader: &mut ParamReader<'_>, name: &'static str, usage: Use, value: SpectrumValue) -> SpectrumDesc {
+fn textured_or(
+    reader: &mut ParamReader<'_>,
+    name: &'static str,
+    usage: Use,
+    value: SpectrumValue,
+) -> Textured<SpectrumDesc> {
     let span = reader.span;
-    reader.spectrum(name, usage).unwrap_or(SpectrumDesc { value, span })
+    reader
+        .spectrum_textured(name, usage)
+        .unwrap_or(Textured::Value(SpectrumDesc { value, span }))
 }

@@ -23,6 +23,9 @@ mod shape;
 mod spectrum;
 mod state;
 mod suggest;
+mod texture;
+mod texture_names;
+mod textured;
 mod tokens;
 mod world;
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::files::Context;
 use super::params::{Param, ParamType, Values, value_span};
 use super::report::Report;
+use crate::desc::TextureId;
 use crate::error::Span;
 
 /// The parameters of one entity, being read.
@@ -16,6 +17,8 @@ pub(super) struct ParamReader<'a> {
     pub entity: String,
     /// The type of the entity in the file.
     pub span: Span,
+    /// The textures that were named, and where.
+    pub textures: Vec<(TextureId, Span)>,
     params: Vec<Param>,
     used: Vec<bool>,
     known: Vec<&'static str>,
@@ -41,6 +44,7 @@ impl<'a> ParamReader<'a> {
             context,
             entity: format!("{class} `{name}`"),
             span,
+            textures: Vec::new(),
             used: vec![false; all.len()],
             params: all,
             known: Vec::new(),
@@ -74,12 +78,7 @@ impl<'a> ParamReader<'a> {
                     kind.name(),
                     expected.join(" or ")
                 );
-                if kind == ParamType::Texture {
-                    let message = format!("`{name}`: textures are not supported yet");
-                    self.report().unsupported(span, message, "the default is used");
-                } else {
-                    self.report().error(span, message);
-                }
+                self.report().error(span, message);
             } else if found.is_some() {
                 self.report()
                     .error(span, format!("the parameter `{name}` is given a second time"));

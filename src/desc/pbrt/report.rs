@@ -98,7 +98,14 @@ impl Report {
         self.unsupported_with_help(span, message, instead, help);
     }
 
-    fn unsupported_with_help(&mut self, span: Span, message: impl Into<String>, instead: &str, help: Option<String>) {
+    /// [`Self::unsupported`] with advice.
+    pub fn unsupported_with_help(
+        &mut self,
+        span: Span,
+        message: impl Into<String>,
+        instead: &str,
+        help: Option<String>,
+    ) {
         if self.lenient {
             self.warning_with_help(span, format!("{}: {instead}", message.into()), help);
         } else {

@@ -17,6 +17,8 @@ pub(super) enum Use {
     Ior,
     /// An absorption coefficient, not negative.
     Absorption,
+    /// A value of a texture, not negative: who uses the texture says what it is.
+    Texture,
 }
 
 impl Use {
@@ -25,7 +27,7 @@ impl Use {
         let (fine, range) = match self {
             Self::Albedo => ((0.0..=1.0).contains(&value), "between 0 and 1"),
             Self::Ior => (value > 0.0, "positive"),
-            Self::Emission | Self::Absorption => (value >= 0.0, "0 or more"),
+            Self::Emission | Self::Absorption | Self::Texture => (value >= 0.0, "0 or more"),
         };
         if fine { Ok(()) } else { Err(range) }
     }
@@ -86,25 +88,30 @@ impl ParamReader<'_> {
     fn spectrum_or(&mut self, name: &'static str, usage: Use, more: &[ParamType]) -> Option<SpectrumDesc> {
         let kinds = [&[ParamType::Rgb, ParamType::Spectrum, ParamType::Blackbody], more].concat();
         let param = self.take(name, &kinds)?;
+        self.spectrum_of(&param, usage)
+    }
+
+    /// The spectrum that a parameter is.
+    pub fn spectrum_of(&mut self, param: &Param, usage: Use) -> Option<SpectrumDesc> {
         let value = match (param.kind, &param.values) {
-            (ParamType::Spectrum, Values::Strings(strings)) => self.named(&param, strings, usage)?,
-            (ParamType::Spectrum, Values::Numbers(numbers)) => self.samples(&param, numbers, usage)?,
+            (ParamType::Spectrum, Values::Strings(strings)) => self.named(param, strings, usage)?,
+            (ParamType::Spectrum, Values::Numbers(numbers)) => self.samples(param, numbers, usage)?,
             (ParamType::Rgb, Values::Numbers(v)) => {
-                self.check_count(&param, v.len(), 3)?;
-                self.check_values(&param, v, usage, 1)?;
+                self.check_count(param, v.len(), 3)?;
+                self.check_values(param, v, usage, 1)?;
                 SpectrumValue::Rgb([v[0] as f32, v[1] as f32, v[2] as f32])
             }
             (ParamType::Blackbody, Values::Numbers(v)) => {
-                self.check_count(&param, v.len(), 1)?;
+                self.check_count(param, v.len(), 1)?;
                 if v[0] <= 0.0 || v[0] > f64::from(f32::MAX) {
-                    self.out_of_range(name, &v[0].to_string(), "a positive temperature in kelvin");
+                    self.out_of_range(&param.name, &v[0].to_string(), "a positive temperature in kelvin");
                     return None;
                 }
                 SpectrumValue::Blackbody(v[0] as f32)
             }
             (_, Values::Numbers(v)) => {
-                self.check_count(&param, v.len(), 1)?;
-                self.check_values(&param, v, usage, 1)?;
+                self.check_count(param, v.len(), 1)?;
+                self.check_values(param, v, usage, 1)?;
                 SpectrumValue::Constant(v[0] as f32)
             }
             _ => return None,

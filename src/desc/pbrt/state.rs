@@ -29,6 +29,7 @@ pub(super) struct Defaults {
     pub shape: Arc<Vec<Param>>,
     pub light: Arc<Vec<Param>>,
     pub material: Arc<Vec<Param>>,
+    pub texture: Arc<Vec<Param>>,
 }
 
 /// A saved state and why it was saved.

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::shape::{PendingMeshes, RawKind};
-use crate::desc::{AreaLightDesc, LightDesc, MaterialDesc, MaterialKind, MotionDesc, SpectrumDesc, SpectrumValue};
+use crate::desc::{
+    AreaLightDesc, LightDesc, MaterialDesc, MaterialKind, MotionDesc, SpectrumDesc, SpectrumValue, Textured,
+};
 use crate::error::Span;
 
 /// The world so far.
@@ -129,10 +131,10 @@ impl Default for Materials {
 
 /// Diffuse with a reflectance of 0.5.
 pub(super) fn default_material(span: Span) -> MaterialDesc {
-    let reflectance = SpectrumDesc {
+    let reflectance = Textured::Value(SpectrumDesc {
         value: SpectrumValue::Constant(0.5),
         span,
-    };
+    });
     MaterialDesc {
         name: None,
         kind: MaterialKind::Diffuse { reflectance },

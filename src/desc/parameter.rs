@@ -1,0 +1,174 @@
+//! Parameters as the reader knows them: name, type, range, default and meaning of each in one place, which the reader reads its
+//! values by and `lucerna list` prints.
+
+/// A parameter of a kind of entity.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// As in a scene file.
+    pub name: &'static str,
+    /// What values it takes.
+    pub kind: ParameterKind,
+    /// What it does, in a sentence without a full stop; units included.
+    pub doc: &'static str,
+}
+
+/// What values a parameter takes, and which one stands in where none is given.
+#[derive(Clone, Copy, Debug)]
+pub enum ParameterKind {
+    /// `bool`.
+    Bool(bool),
+    /// `integer`.
+    Integer {
+        /// If none is given.
+        default: i32,
+        /// The least and the greatest value.
+        range: (i32, i32),
+    },
+    /// `float`.
+    Float {
+        /// If none is given.
+        default: f64,
+        /// What is allowed.
+        range: FloatRange,
+    },
+    /// `vector3`.
+    Vector([f64; 3]),
+    /// `point3`.
+    Point([f64; 3]),
+    /// `point3`: so many of them; there is no default.
+    Points(usize),
+    /// The spectrum of a light: `rgb`, `spectrum` or `blackbody`; by default the colour space's illuminant.
+    Emission,
+    /// `float`: a power or an illuminance, which counts if it is positive; there is no default.
+    Photometric,
+    /// `string`: one of a few words.
+    Choice {
+        /// If none is given.
+        default: &'static str,
+        /// All of them.
+        choices: &'static [&'static str],
+    },
+    /// `string`: free text, of which the meaning is in the doc.
+    Text {
+        /// If none is given.
+        default: &'static str,
+    },
+    /// `string`: the name of a file; there is no default.
+    File,
+    /// The value of a texture: `float`, or for a spectrum texture `rgb`, `spectrum` or `blackbody`.
+    Value {
+        /// If none is given; of a spectrum, at all wavelengths.
+        default: f64,
+    },
+    /// As [`ParameterKind::Value`], or the name of a `texture` of the same class.
+    Textured {
+        /// If none is given; of a spectrum, at all wavelengths.
+        default: f64,
+    },
+    /// `float` or the name of a float `texture`.
+    FloatTextured {
+        /// If none is given.
+        default: f64,
+    },
+}
+
+/// Which numbers are allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FloatRange {
+    /// All finite ones.
+    Any,
+    /// 0 or more.
+    NotNegative,
+    /// More than 0.
+    Positive,
+    /// 1 or more.
+    AtLeastOne,
+    /// From 0 to 1.
+    Unit,
+    /// An angle of more than 0 and at most 180 degrees.
+    HalfTurn,
+    /// An angle of more than 0 and less than 180 degrees.
+    FieldOfView,
+}
+
+impl FloatRange {
+    /// Whether a value is allowed.
+    pub fn contains(self, value: f64) -> bool {
+        match self {
+            Self::Any => true,
+            Self::NotNegative => value >= 0.0,
+            Self::Positive => value > 0.0,
+            Self::AtLeastOne => value >= 1.0,
+            Self::Unit => (0.0..=1.0).contains(&value),
+            Self::HalfTurn => value > 0.0 && value <= 180.0,
+            Self::FieldOfView => value > 0.0 && value < 180.0,
+        }
+    }
+
+    /// Completes "must be".
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Any => "finite",
+            Self::NotNegative => "0 or more",
+            Self::Positive => "positive",
+            Self::AtLeastOne => "1 or more",
+            Self::Unit => "between 0 and 1",
+            Self::HalfTurn => "more than 0 and at most 180",
+            Self::FieldOfView => "more than 0 and less than 180",
+        }
+    }
+}
+
+impl ParameterKind {
+    /// The type, as a scene file writes it.
+    pub fn type_text(&self) -> &'static str {
+        match self {
+            Self::Bool(_) => "bool",
+            Self::Integer { .. } => "integer",
+            Self::Float { .. } | Self::Photometric => "float",
+            Self::Vector(_) => "vector3",
+            Self::Point(_) | Self::Points(_) => "point3",
+            Self::Emission => "rgb | spectrum | blackbody",
+            Self::Choice { .. } | Self::Text { .. } | Self::File => "string",
+            Self::Value { .. } => "float | spectrum",
+            Self::Textured { .. } => "float | spectrum | texture",
+            Self::FloatTextured { .. } => "float | texture",
+        }
+    }
+
+    /// The values that are allowed, for people.
+    pub fn range_text(&self) -> String {
+        match self {
+            Self::Bool(_) => "true, false".to_owned(),
+            Self::Integer { range, .. } => format!("{} to {}", range.0, range.1),
+            Self::Float { range, .. } => range.text().to_owned(),
+            Self::Choice { choices, .. } => choices.join(", "),
+            Self::Text { .. } => "see there".to_owned(),
+            Self::File => "a file".to_owned(),
+            Self::Points(count) => format!("{count} points"),
+            Self::Emission => "0 or more".to_owned(),
+            Self::Photometric => "positive".to_owned(),
+            Self::Vector(_)
+            | Self::Point(_)
+            | Self::Value { .. }
+            | Self::Textured { .. }
+            | Self::FloatTextured { .. } => "finite".to_owned(),
+        }
+    }
+
+    /// The default, as a scene file would write it; empty if there is none.
+    pub fn default_text(&self) -> String {
+        match self {
+            Self::Bool(default) => default.to_string(),
+            Self::Integer { default, .. } => default.to_string(),
+            Self::Float { default, .. }
+            | Self::Value { default }
+            | Self::Textured { default }
+            | Self::FloatTextured { default } => default.to_string(),
+            Self::Vector([x, y, z]) | Self::Point([x, y, z]) => format!("[ {x} {y} {z} ]"),
+            Self::Choice { default, .. } | Self::Text { default } => (*default).to_owned(),
+            Self::Emission => "the colour space's illuminant".to_owned(),
+            Self::File | Self::Points(_) | Self::Photometric => String::new(),
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Parameters by their [`Parameter`] tables, and those that may be given a texture.
+
+use glam::DVec3;
+
+use super::params::{Param, ParamType, Values, value_span};
+use super::reader::ParamReader;
+use super::spectrum::Use;
+use crate::desc::{Parameter, ParameterKind, SpectrumDesc, SpectrumValue, TextureClass, TextureId, Textured};
+use crate::error::Span;
+
+impl ParamReader<'_> {
+    /// A number that may come from a texture.
+    pub fn float_textured(&mut self, name: &'static str) -> Option<Textured<f32>> {
+        let param = self.take(name, &[ParamType::Float, ParamType::Texture])?;
+        match &param.values {
+            Values::Numbers(numbers) => {
+                self.check_count(&param, numbers.len(), 1)?;
+                let value = numbers[0] as f32;
+                if value.is_finite() {
+                    return Some(Textured::Value(value));
+                }
+                self.report().error(
+                    param.values_span,
+                    format!("`{name}` does not fit into 32-bit floating point"),
+                );
+                None
+            }
+            Values::Strings(_) => Some(Textured::Texture(self.texture(&param, TextureClass::Float)?)),
+            _ => None,
+        }
+    }
+
+    /// [`Self::float_textured`], where a number must not be negative; `default` if none is given.
+    pub fn not_negative_textured(&mut self, name: &'static str, default: Textured<f32>) -> Textured<f32> {
+        match self.float_textured(name) {
+            Some(Textured::Value(value)) if value < 0.0 => {
+                self.out_of_range(name, &value.to_string(), "0 or more");
+                default
+            }
+            Some(value) => value,
+            None => default,
+        }
+    }
+
+    /// A spectrum that may come from a texture.
+    pub fn spectrum_textured(&mut self, name: &'static str, usage: Use) -> Option<Textured<SpectrumDesc>> {
+        let kinds = [
+            ParamType::Rgb,
+            ParamType::Spectrum,
+            ParamType::Blackbody,
+            ParamType::Texture,
+        ];
+        let param = self.take(name, &kinds)?;
+        if param.kind == ParamType::Texture {
+            return Some(Textured::Texture(self.texture(&param, TextureClass::Spectrum)?));
+        }
+        self.spectrum_of(&param, usage).map(Textured::Value)
+    }
+
+    /// The texture that a parameter names.
+    fn texture(&mut self, param: &Param, class: TextureClass) -> Option<TextureId> {
+        let Values::Strings(names) = &param.values else {
+            return None;
+        };
+        self.check_count(param, names.len(), 1)?;
+        let span = value_span(self.report(), param, 0);
+        let id = self.context.textures.named(class, &names[0], span);
+        self.textures.push((id, span));
+        Some(id)
+    }
+
+    /// A truth value by its table.
+    pub fn bool_by(&mut self, parameter: &'static Parameter) -> bool {
+        match parameter.kind {
+            ParameterKind::Bool(default) => self.boolean(parameter.name, default),
+            _ => false,
+        }
+    }
+
+    /// A number by its table.
+    pub fn float_by(&mut self, parameter: &'static Parameter) -> f64 {
+        match parameter.kind {
+            ParameterKind::Float { default, range } => {
+                self.float_in(parameter.name, default, |value| range.contains(value), range.text())
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// An integer by its table.
+    pub fn integer_by(&mut self, parameter: &'static Parameter) -> i32 {
+        match parameter.kind {
+            ParameterKind::Integer { default, range } => {
+                let valid = |value| (range.0..=range.1).contains(&value);
+                self.integer_in(parameter.name, default, valid, &parameter.kind.range_text())
+            }
+            _ => 0,
+        }
+    }
+
+    /// A vector by its table.
+    pub fn vector_by(&mut self, parameter: &'static Parameter) -> DVec3 {
+        match parameter.kind {
+            ParameterKind::Vector(default) => self
+                .numbers(parameter.name, ParamType::Vector3, 3)
+                .map_or(DVec3::from(default), |v| DVec3::new(v[0], v[1], v[2])),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// A number that may come from a texture, by its table.
+    pub fn float_textured_by(&mut self, parameter: &'static Parameter) -> Textured<f32> {
+        match parameter.kind {
+            ParameterKind::FloatTextured { default } | ParameterKind::Textured { default } => self
+                .float_textured(parameter.name)
+                .unwrap_or(Textured::Value(default as f32)),
+            _ => Textured::Value(0.0),
+        }
+    }
+
+    /// A spectrum that may come from a texture, by its table.
+    pub fn spectrum_textured_by(&mut self, parameter: &'static Parameter) -> Textured<SpectrumDesc> {
+        let span = self.span;
+        match parameter.kind {
+            ParameterKind::Textured { default } => self
+                .spectrum_textured(parameter.name, Use::Texture)
+                .unwrap_or_else(|| Textured::Value(constant(default, span))),
+            _ => Textured::Value(constant(0.0, span)),
+        }
+    }
+
+    /// A number of a texture's class, by its table.
+    pub fn value_by(&mut self, parameter: &'static Parameter) -> f32 {
+        match parameter.kind {
+            ParameterKind::Value { default } => self.float(parameter.name).unwrap_or(default) as f32,
+            _ => 0.0,
+        }
+    }
+
+    /// A spectrum of a texture's class, by its table.
+    pub fn spectrum_value_by(&mut self, parameter: &'static Parameter) -> SpectrumDesc {
+        let span = self.span;
+        match parameter.kind {
+            ParameterKind::Value { default } => self
+                .spectrum(parameter.name, Use::Texture)
+                .unwrap_or_else(|| constant(default, span)),
+            _ => constant(0.0, span),
+        }
+    }
+}
+
+fn constant(value: f64, span: Span) -> SpectrumDesc {
+    SpectrumDesc {
+        value: SpectrumValue::Constant(value as f32),
+        span,
+    }
+}

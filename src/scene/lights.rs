@@ -1,0 +1,250 @@
+//! Lights of a description to lights of a scene.
+
+use std::f32::consts::PI;
+
+use super::shapes::animated;
+use super::spectra::SpectrumCompiler;
+use crate::desc::{AreaLightDesc, LightDesc, LightKind};
+use crate::geometry::{Geometry, Shape, TriangleMesh};
+use crate::image_io::Image;
+use crate::light::{
+    AreaLight, Behind, DistantLight, EmissionImage, EmitterShape, EnvironmentLight, GoniometricLight, ImageEnvironment,
+    Light, LightId, Place, PointLight, Portal, PortalEnvironment, ProjectionLight, SpotLight, facing,
+};
+use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
+use crate::sampling::{Cell, SphereMap};
+use crate::spectrum::{ColorMode, CompiledSpectrum, RgbEmission};
+
+/// The lights so far.
+pub(super) struct LightBuilder {
+    spectra: SpectrumCompiler,
+    mode: ColorMode,
+    pub lights: Vec<Light>,
+    /// Those that a ray meets when it leaves the scene.
+    pub environments: Vec<LightId>,
+}
+
+/// What an image of emission says, row by row.
+struct Pixels {
+    rgb: Vec<[f32; 3]>,
+    size: [usize; 2],
+}
+
+impl Pixels {
+    fn of(image: &Image) -> Result<Self, String> {
+        Ok(Self {
+            rgb: image.to_rgb().ok_or("the image has no colour")?,
+            size: [image.width(), image.height()],
+        })
+    }
+
+    /// Between the middles of the pixels, at a point of the unit square.
+    fn bilinear(&self, map: SphereMap, point: Vec2) -> [f32; 3] {
+        let at = [0, 1].map(|i| point[i] * self.size[i] as f32 - 0.5);
+        let first = at.map(f32::floor);
+        let [fx, fy] = [at[0] - first[0], at[1] - first[1]];
+        let pixel = |dx: i64, dy: i64| {
+            let [x, y] = map.wrap([first[0] as i64 + dx, first[1] as i64 + dy], self.size);
+            Vec3::from(self.rgb[y * self.size[0] + x])
+        };
+        let row = |dy: i64| pixel(0, dy).lerp(pixel(1, dy), fx);
+        row(0).lerp(row(1), fy).into()
+    }
+}
+
+impl LightBuilder {
+    pub fn new(mode: ColorMode) -> Self {
+        Self {
+            spectra: SpectrumCompiler { mode },
+            mode,
+            lights: Vec::new(),
+            environments: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, light: Light) -> LightId {
+        self.lights.push(light);
+        LightId(self.lights.len() as u32 - 1)
+    }
+
+    fn image(&self, pixels: &Pixels) -> Result<EmissionImage, String> {
+        let image = EmissionImage::new(&pixels.rgb, pixels.size[0], RgbEmission::new(self.mode));
+        image.ok_or_else(|| "the image has no pixels".to_owned())
+    }
+
+    /// Adds a light that is not a shape. The error is a message for its place in the file.
+    pub fn add(&mut self, desc: &LightDesc) -> Result<(), String> {
+        let world_from_light = animated(&desc.world_from_light)?;
+        let place = |local: DAffine3| Place::new(world_from_light.clone(), local);
+        // pbrt-v4: a photometric value replaces the luminance, the scale stays a factor.
+        let scale = |geometric: f32| photometric_scale(desc, geometric);
+        let spectrum = self.spectra.emission(desc.spectrum.as_ref());
+        let light = match &desc.kind {
+            LightKind::Point { from } => {
+                let place = place(DAffine3::from_translation(*from));
+                Light::Point(PointLight::new(place, spectrum.scaled(scale(4.0 * PI)?)))
+            }
+            LightKind::Spot { from, to, angle, delta } => {
+                let [start, end] = [angle - delta, *angle].map(|a| a.to_radians() as f32);
+                let spectrum = spectrum.scaled(scale(SpotLight::geometric_power(start, end))?);
+                let place = place(facing(*from, (*to - *from).normalize()));
+                Light::Spot(SpotLight::new(place, spectrum, start, end))
+            }
+            LightKind::Goniometric { image } => {
+                let factors: Vec<f32> = Pixels::of(image)?
+                    .rgb
+                    .iter()
+                    .map(|pixel| pixel.iter().map(|c| c.max(0.0)).sum::<f32>() / 3.0)
+                    .collect();
+                let spectrum = spectrum.scaled(scale(GoniometricLight::geometric_power(&factors))?);
+                // The image's pole is +y of the light.
+                let swap = DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::Y));
+                let light = GoniometricLight::new(place(swap), spectrum, factors);
+                Light::Goniometric(light.ok_or("the image must be square")?)
+            }
+            LightKind::Projection { image, fov } => {
+                let image = self.image(&Pixels::of(image)?)?;
+                let light = ProjectionLight::new(place(DAffine3::IDENTITY), image, fov.to_radians() as f32);
+                let factor = scale(light.power())?;
+                Light::Projection(light.scaled(factor))
+            }
+            LightKind::Distant { from, to } => {
+                let place = place(facing(DVec3::ZERO, (*from - *to).normalize()));
+                Light::Distant(DistantLight::new(place, spectrum.scaled(scale(1.0)?)))
+            }
+            LightKind::Infinite { image, portal } => {
+                let light = self.environment(desc, &world_from_light, spectrum, image.as_deref(), *portal)?;
+                self.environments.push(LightId(self.lights.len() as u32));
+                Light::Environment(light)
+            }
+        };
+        self.push(light);
+        Ok(())
+    }
+
+    fn environment(
+        &self,
+        desc: &LightDesc,
+        world_from_light: &AnimatedTransform,
+        spectrum: CompiledSpectrum,
+        image: Option<&Image>,
+        portal: Option<[DVec3; 4]>,
+    ) -> Result<EnvironmentLight, String> {
+        let portal = portal.map(|corners| {
+            let portal = Portal::new(corners.map(|p| p.as_vec3()));
+            portal.ok_or("the portal must be a rectangle, its corners in order")
+        });
+        let portal = portal.transpose()?;
+        let Some(image) = image else {
+            let spectrum = spectrum.scaled(photometric_scale(desc, PI)?);
+            return Ok(match portal {
+                None => EnvironmentLight::Constant(spectrum),
+                Some(portal) => {
+                    EnvironmentLight::Portal(Box::new(PortalEnvironment::new(portal, Behind::Constant(spectrum))))
+                }
+            });
+        };
+        let pixels = Pixels::of(image)?;
+        let [width, height] = pixels.size;
+        let map = SphereMap::of_size(width, height).ok_or("the image must be square or twice as wide as high")?;
+        let image = self.image(&pixels)?;
+        let factor = photometric_scale(desc, upward_illuminance(&image, map))?;
+        let Some(portal) = portal else {
+            let place = Place::new(world_from_light.clone(), DAffine3::IDENTITY);
+            let environment = ImageEnvironment::new(place, image.scaled(factor));
+            let environment = environment.ok_or("the image must be square or twice as wide as high")?;
+            return Ok(EnvironmentLight::Image(Box::new(environment)));
+        };
+        if !world_from_light.is_static() {
+            return Err("a moving environment behind a portal is not supported".to_owned());
+        }
+        let light_from_world = world_from_light.at(0.0).matrix3.inverse().as_mat3();
+        let side = width.max(height).min(width * height);
+        let rgb = PortalEnvironment::rectified(&portal, side)
+            .map(|w| pixels.bilinear(map, map.point((light_from_world * w).normalize())));
+        let rectified = Pixels {
+            rgb: rgb.collect(),
+            size: [side; 2],
+        };
+        let behind = Behind::Image(self.image(&rectified)?.scaled(factor));
+        Ok(EnvironmentLight::Portal(Box::new(PortalEnvironment::new(
+            portal, behind,
+        ))))
+    }
+
+    /// Adds one light for each primitive of a shape that has an area. The error is a message for the light's place in the file.
+    pub fn add_area(
+        &mut self,
+        desc: &AreaLightDesc,
+        geometry: &Geometry,
+        moves: bool,
+    ) -> Result<Vec<Option<LightId>>, String> {
+        let emitters = match &geometry.shape {
+            _ if moves => Err("an area light on a moving shape is not supported yet"),
+            Shape::Mesh(mesh) => triangle_emitters(mesh),
+            Shape::Spheres(spheres) => spheres
+                .iter()
+                .map(|sphere| {
+                    let scale = uniform_scale(&sphere.world_from_object().matrix3);
+                    let radius = sphere.radius() * scale.ok_or("an area light on an ellipsoid is not supported")?;
+                    Ok(EmitterShape::Sphere {
+                        center: sphere.center(),
+                        radius,
+                        inward: sphere.has_flipped_normal(),
+                    })
+                })
+                .collect(),
+        };
+        let radiance = self.spectra.emission(desc.l.as_ref());
+        let add = |emitter| {
+            let light = AreaLight::new(emitter, radiance.scaled(desc.scale), desc.two_sided)?;
+            // As in pbrt-v4 the power is that of each light: of one triangle.
+            let light = match desc.power {
+                Some(power) => {
+                    let geometric = light.sides() * PI * light.area();
+                    light.scaled(power / geometric)
+                }
+                None => light,
+            };
+            Some(self.push(Light::Area(light)))
+        };
+        Ok(emitters?.into_iter().map(add).collect())
+    }
+}
+
+/// The factor that a light with a geometric factor is scaled by: power or illuminance of the light as it is, over its luminance.
+fn photometric_scale(desc: &LightDesc, geometric: f32) -> Result<f32, String> {
+    match desc.photometric {
+        None => Ok(desc.scale),
+        Some(value) if geometric > 0.0 => Ok(desc.scale * value / geometric),
+        Some(_) => Err("the light is black: it has no luminance to be scaled".to_owned()),
+    }
+}
+
+/// What pbrt-v4 takes for the illuminance of a surface that faces the image's pole: half of it.
+fn upward_illuminance(image: &EmissionImage, map: SphereMap) -> f32 {
+    let size = image.size();
+    let offset = Vec2::splat(0.5);
+    0.5 * image.sum(|x, y| map.direction(&Cell { x, y, offset }, size).z.max(0.0) * map.solid_angle(y, size))
+}
+
+fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {
+    if mesh.is_moving() {
+        return Err("an area light on a moving mesh is not supported yet");
+    }
+    Ok((0..mesh.triangle_count())
+        .map(|triangle| EmitterShape::Triangle {
+            vertices: mesh.triangle(triangle, 0.0),
+            ng: mesh.geometric_normal(triangle),
+        })
+        .collect())
+}
+
+/// The factor of a rotation with uniform scale; `None` for any other matrix.
+fn uniform_scale(m: &DMat3) -> Option<f64> {
+    let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
+    let scale = lengths.x;
+    let orthogonal = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
+    let uniform = (lengths - DVec3::splat(scale)).abs().max_element() <= 1e-6 * scale;
+    (uniform && orthogonal.iter().all(|d| d.abs() <= 1e-6 * scale * scale)).then_some(scale)
+}

@@ -1,0 +1,126 @@
+//! Textures: numbers and spectra that vary over surfaces, with the kinds, parameters and meaning of pbrt-v4.
+//!
+//! A texture is asked with a [`TextureContext`], which says how much of the surface one sample stands for, so that it can filter
+//! itself. A [`FloatTexture::Constant`] or [`SpectrumTexture::Constant`] is answered without one.
+
+mod blend;
+mod context;
+
+pub use blend::{Blend, BlendWeight};
+pub use context::TextureContext;
+
+use std::sync::Arc;
+
+use crate::geometry::SurfaceInteraction;
+use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+
+/// A number that may vary over a surface. Cheap to clone.
+#[derive(Clone, Debug)]
+pub enum FloatTexture {
+    /// The same everywhere.
+    Constant(f32),
+    /// A texture times another.
+    Scale(Arc<[FloatTexture; 2]>),
+    /// Between two others.
+    Blend(Arc<Blend<FloatTexture>>),
+}
+
+/// A spectrum that may vary over a surface. Cheap to clone.
+#[derive(Clone, Debug)]
+pub enum SpectrumTexture {
+    /// The same everywhere.
+    Constant(CompiledSpectrum),
+    /// A texture times a number.
+    Scale(Arc<(SpectrumTexture, FloatTexture)>),
+    /// Between two others.
+    Blend(Arc<Blend<SpectrumTexture>>),
+}
+
+impl FloatTexture {
+    /// Whether it is the same everywhere.
+    #[inline]
+    pub fn is_constant(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
+    /// The value at a surface point.
+    #[inline]
+    pub fn at(&self, si: &SurfaceInteraction) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            _ => self.evaluate(&TextureContext::new(si)),
+        }
+    }
+
+    /// The value for a context.
+    pub fn evaluate(&self, context: &TextureContext) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Scale(factors) => match factors[1].evaluate(context) {
+                0.0 => 0.0,
+                factor => factor * factors[0].evaluate(context),
+            },
+            Self::Blend(blend) => blend.evaluate(
+                context,
+                |texture| texture.evaluate(context),
+                |a, b, t| a * (1.0 - t) + b * t,
+            ),
+        }
+    }
+}
+
+impl SpectrumTexture {
+    /// Whether it is the same everywhere.
+    #[inline]
+    pub fn is_constant(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
+    /// The values at a surface point and the wavelengths of a path.
+    #[inline]
+    pub fn at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> SampledSpectrum {
+        match self {
+            Self::Constant(spectrum) => spectrum.sample(lambda),
+            _ => self.evaluate(&TextureContext::new(si), lambda),
+        }
+    }
+
+    /// [`SpectrumTexture::at`] of a reflectance: what varies is kept in [0, 1], as in pbrt-v4.
+    #[inline]
+    pub fn reflectance_at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> SampledSpectrum {
+        match self {
+            Self::Constant(spectrum) => spectrum.sample(lambda),
+            _ => self
+                .evaluate(&TextureContext::new(si), lambda)
+                .map(|value| value.clamp(0.0, 1.0)),
+        }
+    }
+
+    /// The values for a context and the wavelengths of a path.
+    pub fn evaluate(&self, context: &TextureContext, lambda: &Wavelengths) -> SampledSpectrum {
+        match self {
+            Self::Constant(spectrum) => spectrum.sample(lambda),
+            Self::Scale(factors) => match factors.1.evaluate(context) {
+                0.0 => SampledSpectrum::ZERO,
+                factor => factors.0.evaluate(context, lambda) * factor,
+            },
+            Self::Blend(blend) => blend.evaluate(
+                context,
+                |texture| texture.evaluate(context, lambda),
+                |a, b, t| a * (1.0 - t) + b * t,
+            ),
+        }
+    }
+}
+
+impl From<f32> for FloatTexture {
+    fn from(value: f32) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<CompiledSpectrum> for SpectrumTexture {
+    fn from(spectrum: CompiledSpectrum) -> Self {
+        Self::Constant(spectrum)
+    }
+}
