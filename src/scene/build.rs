@@ -16,6 +16,7 @@ use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, WorldBuilder};
 use crate::light::{LightId, LightSampler};
 use crate::material::{ConductorIor, Material};
+use crate::math::AnimatedTransform;
 
 /// What is collected while shapes and lights are gone through.
 struct SceneBuilder<'a> {
@@ -137,7 +138,7 @@ impl SceneBuilder<'_> {
         };
         let lights = match &shape.area_light {
             None => Vec::new(),
-            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.is_some()),
+            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.as_ref()),
         };
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
@@ -156,8 +157,13 @@ impl SceneBuilder<'_> {
     }
 
     /// One light for each primitive that has an area.
-    fn add_area_lights(&mut self, desc: &AreaLightDesc, geometry: &Geometry, moves: bool) -> Vec<Option<LightId>> {
-        self.lights.add_area(desc, geometry, moves).unwrap_or_else(|message| {
+    fn add_area_lights(
+        &mut self,
+        desc: &AreaLightDesc,
+        geometry: &Geometry,
+        motion: Option<&AnimatedTransform>,
+    ) -> Vec<Option<LightId>> {
+        self.lights.add_area(desc, geometry, motion).unwrap_or_else(|message| {
             self.problem(desc.span, message);
             Vec::new()
         })

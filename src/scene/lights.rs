@@ -1,6 +1,7 @@
 //! Lights of a description to lights of a scene.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use super::shapes::animated;
 use super::spectra::SpectrumCompiler;
@@ -8,8 +9,9 @@ use crate::desc::{AreaLightDesc, LightDesc, LightKind};
 use crate::geometry::{Geometry, Shape, TriangleMesh};
 use crate::image_io::Image;
 use crate::light::{
-    AreaLight, Behind, DistantLight, EmissionImage, EmitterShape, EnvironmentLight, GoniometricLight, ImageEnvironment,
-    Light, LightId, Place, PointLight, Portal, PortalEnvironment, ProjectionLight, SpotLight, facing,
+    AreaLight, Behind, Coordinates, DistantLight, EmissionImage, EmitterShape, EnvironmentLight, GoniometricLight,
+    ImageEnvironment, Light, LightId, MovingEmitter, Place, PointLight, Portal, PortalEnvironment, ProjectionLight,
+    Side, SpotLight, facing,
 };
 use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use crate::sampling::{Cell, SphereMap};
@@ -172,44 +174,92 @@ impl LightBuilder {
         ))))
     }
 
-    /// Adds one light for each primitive of a shape that has an area. The error is a message for the light's place in the file.
+    /// Adds one light for each primitive of a shape that has an area; `motion` moves the shape. The error is a message for the
+    /// light's place in the file.
     pub fn add_area(
         &mut self,
         desc: &AreaLightDesc,
         geometry: &Geometry,
-        moves: bool,
+        motion: Option<&AnimatedTransform>,
     ) -> Result<Vec<Option<LightId>>, String> {
-        let emitters = match &geometry.shape {
-            _ if moves => Err("an area light on a moving shape is not supported yet"),
-            Shape::Mesh(mesh) => triangle_emitters(mesh),
-            Shape::Spheres(spheres) => spheres
-                .iter()
-                .map(|sphere| {
-                    let scale = uniform_scale(&sphere.world_from_object().matrix3);
-                    let radius = sphere.radius() * scale.ok_or("an area light on an ellipsoid is not supported")?;
-                    Ok(EmitterShape::Sphere {
-                        center: sphere.center(),
-                        radius,
-                        inward: sphere.has_flipped_normal(),
-                    })
-                })
-                .collect(),
-        };
+        let image = desc
+            .image
+            .as_deref()
+            .map(|image| self.image(&Pixels::of(image)?).map(Arc::new))
+            .transpose()?;
+        // What pbrt-v4 scales a power by: the mean of the image, whatever part of it the shape shows.
+        let mean = image.as_ref().map_or(1.0, |image| {
+            let [width, height] = image.size();
+            image.sum(|_, _| 1.0) / (width * height) as f32
+        });
+        if desc.power.is_some() && mean <= 0.0 {
+            return Err("the light is black: it has no luminance to be scaled".to_owned());
+        }
         let radiance = self.spectra.emission(desc.l.as_ref());
-        let add = |emitter| {
-            let light = AreaLight::new(emitter, radiance.scaled(desc.scale), desc.two_sided)?;
-            // As in pbrt-v4 the power is that of each light: of one triangle.
-            let light = match desc.power {
-                Some(power) => {
-                    let geometric = light.sides() * PI * light.area();
-                    light.scaled(power / geometric)
-                }
+        let count = geometry.primitive_count();
+        let add = |primitive| {
+            let (light, coordinates) = emitter(geometry, primitive, motion, &radiance, desc.two_sided)?;
+            let light = match &image {
+                Some(image) => light.with_image(Arc::clone(image), coordinates),
                 None => light,
             };
-            Some(self.push(Light::Area(light)))
+            // As in pbrt-v4 the power is that of each light: of one triangle.
+            let power = desc
+                .power
+                .map_or(1.0, |p| p / (light.sides() * PI * light.area() * mean));
+            Some(self.push(Light::Area(light.scaled(desc.scale * power))))
         };
-        Ok(emitters?.into_iter().map(add).collect())
+        Ok((0..count).map(add).collect())
     }
+}
+
+/// A primitive as a light; `None` if it has no area.
+fn emitter(
+    geometry: &Geometry,
+    primitive: usize,
+    motion: Option<&AnimatedTransform>,
+    radiance: &CompiledSpectrum,
+    two_sided: bool,
+) -> Option<(AreaLight, Coordinates)> {
+    let radiance = radiance.clone();
+    let moving = || motion.cloned().unwrap_or_else(AnimatedTransform::identity);
+    match &geometry.shape {
+        Shape::Mesh(mesh) => {
+            let light = if motion.is_some() || mesh.is_moving() {
+                AreaLight::moving(moving_triangle(mesh, primitive, moving()), radiance, two_sided)
+            } else {
+                let shape = EmitterShape::Triangle {
+                    vertices: mesh.triangle(primitive, 0.0),
+                    ng: mesh.geometric_normal(primitive),
+                };
+                AreaLight::new(shape, radiance, two_sided)
+            };
+            let corners = match mesh.uvs() {
+                Some(uvs) => mesh.indices()[primitive].map(|v| uvs[v as usize]),
+                None => [Vec2::ZERO, Vec2::X, Vec2::ONE],
+            };
+            Some((light?, Coordinates::Corners(corners)))
+        }
+        Shape::Spheres(spheres) => {
+            let sphere = &spheres[primitive];
+            let light = if motion.is_some() {
+                AreaLight::moving(MovingEmitter::sphere(sphere.clone(), moving()), radiance, two_sided)
+            } else {
+                AreaLight::sphere(sphere, radiance, two_sided)
+            };
+            Some((light?, Coordinates::Sphere(sphere.object_from_world().matrix3)))
+        }
+    }
+}
+
+fn moving_triangle(mesh: &TriangleMesh, triangle: usize, motion: AnimatedTransform) -> MovingEmitter {
+    let corners = mesh.indices()[triangle].map(|v| v as usize);
+    let steps = (0..mesh.time_steps()).map(|step| corners.map(|v| mesh.positions(step)[v]));
+    let side = match mesh.normals() {
+        None => Side::Orientation(mesh.has_flipped_normal()),
+        Some(normals) => Side::Of(corners.into_iter().map(|v| normals[v]).sum()),
+    };
+    MovingEmitter::triangle(steps.collect(), side, motion)
 }
 
 /// The factor that a light with a geometric factor is scaled by: power or illuminance of the light as it is, over its luminance.
@@ -226,25 +276,4 @@ fn upward_illuminance(image: &EmissionImage, map: SphereMap) -> f32 {
     let size = image.size();
     let offset = Vec2::splat(0.5);
     0.5 * image.sum(|x, y| map.direction(&Cell { x, y, offset }, size).z.max(0.0) * map.solid_angle(y, size))
-}
-
-fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {
-    if mesh.is_moving() {
-        return Err("an area light on a moving mesh is not supported yet");
-    }
-    Ok((0..mesh.triangle_count())
-        .map(|triangle| EmitterShape::Triangle {
-            vertices: mesh.triangle(triangle, 0.0),
-            ng: mesh.geometric_normal(triangle),
-        })
-        .collect())
-}
-
-/// The factor of a rotation with uniform scale; `None` for any other matrix.
-fn uniform_scale(m: &DMat3) -> Option<f64> {
-    let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-    let scale = lengths.x;
-    let orthogonal = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
-    let uniform = (lengths - DVec3::splat(scale)).abs().max_element() <= 1e-6 * scale;
-    (uniform && orthogonal.iter().all(|d| d.abs() <= 1e-6 * scale * scale)).then_some(scale)
 }

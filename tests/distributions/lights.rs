@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2, Vec3};
 use lucerna::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightDensity, LightEnd, PointLight,
+    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightDensity, LightEnd, Place, PointLight,
 };
 use lucerna::math::Bounds3;
 use lucerna::sampling::warp;
@@ -71,7 +71,7 @@ fn spheres_are_sampled_with_their_density() {
         let name = format!("sphere of {radius} at {distance}");
         let report = Chi2::new([[-PI, PI], [0.0, widest]]).of(TESTS).run(
             |u| {
-                let sample = turned.sample_li(Vec3::ZERO, first_two(u), &wavelengths())?;
+                let sample = turned.sample_li(Vec3::ZERO, 0.0, first_two(u), &wavelengths())?;
                 let w = sample.wi.as_dvec3();
                 let sin2 = w.x * w.x + w.y * w.y;
                 let one_minus_cos = if w.z > 0.0 { sin2 / (1.0 + w.z) } else { 1.0 - w.z };
@@ -85,7 +85,7 @@ fn spheres_are_sampled_with_their_density() {
                 let t = distance * cos + if outside { -half } else { half };
                 let p = w * t;
                 let ng = (p - DVec3::Z * distance) / radius;
-                f64::from(area.pdf_li(Vec3::ZERO, p.as_vec3(), ng.as_vec3()).0)
+                f64::from(area.pdf_li(Vec3::ZERO, p.as_vec3(), ng.as_vec3(), 0.0).0)
             },
         );
         report.assert_ok(&name);
@@ -105,7 +105,7 @@ fn triangles_are_sampled_with_their_density() {
         let Light::Area(area) = &light else { unreachable!() };
         let report = Chi2::new([[0.0, 1.0]; 2]).of(TESTS).run(
             |u| {
-                let sample = light.sample_li(from, first_two(u), &wavelengths())?;
+                let sample = light.sample_li(from, 0.0, first_two(u), &wavelengths())?;
                 let LightEnd::Point { p, .. } = sample.end else {
                     panic!("a triangle is not infinitely far away");
                 };
@@ -122,7 +122,7 @@ fn triangles_are_sampled_with_their_density() {
                 let p = a * wa + b * wb + c * (1.0 - wa - wb);
                 let d = p - from.as_dvec3();
                 let n = normal.normalize();
-                let pdf_w = f64::from(area.pdf_li(from, p.as_vec3(), n.as_vec3()).0);
+                let pdf_w = f64::from(area.pdf_li(from, p.as_vec3(), n.as_vec3(), 0.0).0);
                 pdf_w * d.dot(n).abs() / d.length().powi(3) * normal.length()
             },
         );
@@ -137,13 +137,13 @@ fn check_stated_density(light: &Light, from: Vec3, name: &str) {
     let mut random = Random::new(11);
     let mut sampled = 0;
     for _ in 0..500 {
-        let Some(sample) = light.sample_li(from, first_two(random.unit4()), &wavelengths()) else {
+        let Some(sample) = light.sample_li(from, 0.0, first_two(random.unit4()), &wavelengths()) else {
             continue;
         };
         let (LightEnd::Point { p, ng, .. }, LightDensity::Continuous(pdf)) = (sample.end, sample.density) else {
             panic!("{name}: an area light has points and a density");
         };
-        let stated = area.pdf_li(from, p, ng).0;
+        let stated = area.pdf_li(from, p, ng, 0.0).0;
         assert!((stated / pdf.0 - 1.0).abs() < 1e-4, "{name}: {stated} and {}", pdf.0);
         assert!(((p - from).normalize() - sample.wi).length() < 1e-5, "{name}");
         assert_eq!(sample.li.0[0], 2.0, "{name}");
@@ -173,7 +173,7 @@ fn inverse_densities_add_up_to_the_solid_angle() {
             ..Means::default()
         };
         let runs = runs_of(|random| {
-            let sample = light.sample_li(from, first_two(random.unit4()), &wavelengths());
+            let sample = light.sample_li(from, 0.0, first_two(random.unit4()), &wavelengths());
             let density = sample.map(|s| s.density);
             match density {
                 Some(LightDensity::Continuous(pdf)) => 1.0 / f64::from(pdf.0),
@@ -187,7 +187,7 @@ fn inverse_densities_add_up_to_the_solid_angle() {
 }
 
 /// 16 means of 16,384 values.
-fn runs_of(value: impl Fn(&mut Random) -> f64) -> Vec<Vec<f64>> {
+pub(super) fn runs_of(value: impl Fn(&mut Random) -> f64) -> Vec<Vec<f64>> {
     const VALUES: usize = 16_384;
     let run = |seed: usize| {
         let mut random = Random::new(seed as u64);
@@ -225,17 +225,23 @@ fn power_is_the_flux_through_a_sphere_around_it() {
         ),
         (
             "point",
-            Light::Point(PointLight::new(Vec3::new(0.3, 0.1, 0.2), constant(2.0))),
+            Light::Point(PointLight::new(
+                Place::at_point(Vec3::new(0.3, 0.1, 0.2)),
+                constant(2.0),
+            )),
             far,
         ),
         (
             "distant",
-            Light::Distant(DistantLight::new(towards, constant(2.0))),
+            Light::Distant(DistantLight::new(
+                Place::facing(DVec3::ZERO, towards.as_dvec3()),
+                constant(2.0),
+            )),
             scene_radius,
         ),
         (
             "environment",
-            Light::Environment(EnvironmentLight::new(constant(2.0))),
+            Light::Environment(EnvironmentLight::Constant(constant(2.0))),
             scene_radius,
         ),
     ];
@@ -244,7 +250,7 @@ fn power_is_the_flux_through_a_sphere_around_it() {
         let runs = runs_of(|random| {
             let u = random.unit4();
             let outward = warp::sample_uniform_sphere(Vec2::new(u[2], u[3]));
-            let Some(sample) = light.sample_li(outward * radius, first_two(u), &wavelengths()) else {
+            let Some(sample) = light.sample_li(outward * radius, 0.0, first_two(u), &wavelengths()) else {
                 return 0.0;
             };
             // Finite lights shine outward through the sphere, infinite ones inward.

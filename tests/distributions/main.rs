@@ -5,6 +5,7 @@ mod common;
 
 mod bsdfs;
 mod cameras;
+mod environments;
 mod light_samplers;
 mod lights;
 
