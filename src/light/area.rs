@@ -18,6 +18,7 @@ use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 pub struct AreaLight {
     /// At time 0 if it moves.
     emitter: Emitter,
+    area: f32,
     motion: Option<Arc<MovingEmitter>>,
     radiance: Radiance,
     two_sided: bool,
@@ -53,8 +54,10 @@ pub enum Coordinates {
 impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
+        let area = shape.area();
         Some(Self {
             emitter: Emitter::new(shape)?,
+            area,
             motion: None,
             radiance: Radiance::Constant(radiance),
             two_sided,
@@ -68,8 +71,10 @@ impl AreaLight {
 
     /// A surface that moves. `None` if it has no area at time 0.
     pub fn moving(emitter: MovingEmitter, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
+        let at_start = emitter.at(0.0)?;
         Some(Self {
-            emitter: emitter.at(0.0)?,
+            area: at_start.shape.area(),
+            emitter: at_start,
             motion: Some(Arc::new(emitter)),
             radiance: Radiance::Constant(radiance),
             two_sided,
@@ -107,7 +112,7 @@ impl AreaLight {
 
     /// Its surface area, one side; at time 0 if it moves.
     pub fn area(&self) -> f32 {
-        self.emitter.area
+        self.area
     }
 
     /// How many sides emit.
@@ -188,7 +193,7 @@ impl AreaLight {
     }
 
     pub(super) fn bounds(&self) -> LightBounds {
-        let (luminance, area) = (self.luminance(), self.emitter.area);
+        let (luminance, area) = (self.luminance(), self.area);
         if let Some(motion) = &self.motion {
             return LightBounds::omnidirectional(motion.bounds(), luminance * area);
         }
@@ -211,7 +216,7 @@ impl AreaLight {
 
     /// At time 0 if it moves.
     pub(super) fn power(&self) -> f32 {
-        self.sides() * PI * self.emitter.area * self.luminance()
+        self.sides() * PI * self.area * self.luminance()
     }
 }
 

@@ -56,8 +56,8 @@ pub(super) enum SamplePlace {
 #[derive(Clone, Debug)]
 pub(super) struct Emitter {
     pub shape: EmitterShape,
-    /// One side.
-    pub area: f32,
+    /// Of a point chosen uniformly by area; not known of an ellipsoid, where none is.
+    uniform: AreaPdf,
     /// Of a point of a triangle: that of its plane, and the rounding of three weighted corners.
     error: f32,
 }
@@ -65,9 +65,12 @@ pub(super) struct Emitter {
 impl Emitter {
     /// `None` if the shape has no area.
     pub fn new(shape: EmitterShape) -> Option<Self> {
-        let area = shape.area();
+        let area = match &shape {
+            EmitterShape::Ellipsoid(_) => f32::INFINITY,
+            EmitterShape::Triangle { .. } | EmitterShape::Sphere { .. } => shape.area(),
+        };
         (area > 0.0).then(|| Self {
-            area,
+            uniform: AreaPdf(1.0 / area),
             error: shape.error(),
             shape,
         })
@@ -91,7 +94,7 @@ impl Emitter {
 
     /// The density by solid angle of a point chosen uniformly by area.
     fn uniform_pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
-        area_to_solid_angle(AreaPdf(1.0 / self.area), from, p, ng)
+        area_to_solid_angle(self.uniform, from, p, ng)
     }
 
     /// A point of the surface for `u` in [0, 1)².
@@ -180,7 +183,8 @@ impl EmitterShape {
         }
     }
 
-    fn area(&self) -> f32 {
+    /// One side. Slow for an ellipsoid.
+    pub fn area(&self) -> f32 {
         match self {
             Self::Triangle {
                 vertices: [a, b, c], ..

@@ -44,7 +44,7 @@ fn a_spotlight_falls_off_by_a_smooth_step() {
              \"point3 to\" [-0.2 -0.3 1] {parameters}\nAttributeEnd"
         )
     };
-    for (angle, delta) in [(30.0, 5.0), (50.0, 50.0), (70.0, 20.0)] {
+    for (angle, delta) in [(60.0, 60.0), (70.0, 20.0), (75.0, 40.0)] {
         let parameters = format!("\"float coneangle\" {angle} \"float conedeltaangle\" {delta} \"rgb I\" [9 9 9]");
         let options = options(1);
         check_with(
@@ -107,13 +107,14 @@ fn a_projection_throws_its_picture_upright() {
     let light = |file: &str, parameters: &str| {
         format!(
             "AttributeBegin\nTranslate 0 0 2.35\nRotate 180 0 1 0\nLightSource \"projection\" \"string filename\" \"{file}\" \
-             \"float fov\" 60 {parameters}\nAttributeEnd"
+             \"float fov\" 53.13010235415598 {parameters}\nAttributeEnd"
         )
     };
     // Three columns, two rows: the angle is that of the height.
     let value = |x: usize, y: usize| (1 + x + 3 * y) as f32;
     let file = grey_image("projection", [3, 2], value);
-    let half = 30_f64.to_radians().tan();
+    // At half the height: its edges are where the quadrature finds them.
+    let half = 0.5;
     let picture = |p: DVec3| {
         let d = (p - at) / 2.0;
         let (x, y) = ((-d.x / (1.5 * half) + 1.0) * 1.5, (1.0 - d.y / half) * 1.0);
@@ -171,9 +172,13 @@ fn a_sky_image_is_turned_with_its_light() {
     check_irradiance("sky, quarter turned", 1, &light("Rotate 90 0 1 0"), |_| {
         PI * (0.75 * 0.5 + 0.25 * 3.0)
     });
-    // Equal areas, four pixels: quarters of the sphere about the axis, x < 0 and y > 0 below left. As pbrt-v4 counts it, half of
-    // the illuminance is what is asked for.
-    let square = grey_image("sky-corners", [2, 2], |x, y| if (x, y) == (0, 1) { 3.0 } else { 0.5 });
+    // Equal areas: quarters of the image are quarters of the sphere about the axis. As pbrt-v4 counts it, half of the illuminance
+    // is what is asked for.
+    let square = grey_image(
+        "sky-corners",
+        [64, 64],
+        |x, y| if x < 32 && y >= 32 { 3.0 } else { 0.5 },
+    );
     let light = format!("LightSource \"infinite\" \"string filename\" \"{square}\" \"float illuminance\" 10");
     check_irradiance("sky by illuminance", 1, &light, |_| 20.0);
 }
@@ -219,7 +224,7 @@ fn an_image_on_a_lamp_is_where_its_coordinates_are() {
         quad(corner.to_array(), a.to_array(), b.to_array())
     );
     // u along a, v along b; rows from the top, 1 above and 2 below: linear from 2 at v = 1/4 to 1 at v = 3/4.
-    check_irradiance("lamp with an image", 1, &light, |p| {
+    check_with("lamp with an image", 1024, &options(1), &light, |p| {
         mean_of_strips([0.0, 1.0], |v| {
             let value = 2.0 - ((v - 0.25) / 0.5).clamp(0.0, 1.0);
             let (thin, start) = (b / STRIPS as f64, corner + 0.5 * a + b * (v - 0.5 / STRIPS as f64));
@@ -308,7 +313,7 @@ fn an_ellipsoid_lights_by_what_is_seen_of_it() {
     let axes = DVec3::new(1.2, 0.4, 0.7);
     let light = "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n\
                  Translate 0.3 -0.2 2.5\nScale 2.4 0.8 1.4\nShape \"sphere\" \"float radius\" 0.5\nAttributeEnd";
-    check_irradiance("ellipsoid", 1, light, |p| {
+    check_with("ellipsoid", 1024, &options(1), light, |p| {
         const N: usize = 24;
         let mut sum = 0.0;
         for i in 0..2 * N * N {
