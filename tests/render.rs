@@ -310,3 +310,59 @@ fn tiny_pictures_are_rendered() {
         }
     }
 }
+
+/// A room with lamps of every kind, large and small, many and few; a wall of glass and one of metal, so that both strategies of
+/// multiple importance sampling matter.
+fn many_lamps(sampler: &str) -> String {
+    let mut lamps = String::new();
+    for i in 0..60 {
+        let (x, y) = (f64::from(i % 10) * 0.6 - 2.7, f64::from(i / 10) * 0.6 - 1.5);
+        let l = 1.0 + f64::from(i * 7 % 11);
+        let z = 0.6 + 0.9 * f64::from(i % 3);
+        lamps += &format!(
+            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [{l} {l} {}] \"bool twosided\" {} Translate {x} {y} {z} \
+             Rotate {} 1 0.3 0 Shape \"trianglemesh\" \"point3 P\" [0 0 0  0.12 0 0  0 0.12 0] AttributeEnd\n",
+            0.5 * l,
+            i % 4 == 0,
+            37 * i,
+        );
+    }
+    format!(
+        "LookAt 0 -5 1.5  0 0 1  0 0 1
+        Camera \"perspective\" \"float fov\" 60
+        Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32
+        PixelFilter \"box\"
+        Integrator \"path\" \"integer maxdepth\" 3 \"string lightsampler\" \"{sampler}\"
+        WorldBegin
+        LightSource \"infinite\" \"rgb L\" [0.02 0.02 0.03]
+        LightSource \"distant\" \"point3 from\" [1 -2 3] \"rgb L\" [0.1 0.1 0.1]
+        LightSource \"point\" \"point3 from\" [-2 -1 1] \"rgb I\" [0.2 0.3 0.2]
+        LightSource \"spot\" \"point3 from\" [2 -2 3] \"point3 to\" [0 0 0] \"float conedeltaangle\" 0 \"rgb I\" [2 1 1]
+        {lamps}
+        AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [3 2 2] Translate -1 1 0.5 Shape \"sphere\" \"float radius\" 0.2
+        AttributeEnd
+        Material \"diffuse\" \"rgb reflectance\" [0.6 0.5 0.4]
+        Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-4 -4 0  4 -4 0  4 4 0  -4 4 0]
+        Material \"conductor\" \"float roughness\" 0.3
+        Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-4 3 0  4 3 0  4 3 4  -4 3 4]
+        Material \"dielectric\" \"float roughness\" 0.3
+        Translate 1 -1 0.7 Shape \"sphere\" \"float radius\" 0.5"
+    )
+}
+
+/// How a light is chosen does not change the expectation: the hierarchy against all alike, and against power.
+#[test]
+fn light_samplers_give_the_same_picture() {
+    let runs = |sampler: &str, mode| {
+        let built = Built::new(parse(&many_lamps(sampler)), Backend::default(), mode);
+        built.runs(256, [8, 8])
+    };
+    for mode in MODES {
+        let by_tree = runs("bvh", mode);
+        for other in ["uniform", "power"] {
+            let report = Means::default().against_runs(&by_tree, &runs(other, mode));
+            report.assert_agrees(&format!("bvh and {other}, {mode:?}"));
+            report.assert_power(other, 0.1, 0.02);
+        }
+    }
+}

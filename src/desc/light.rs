@@ -1,15 +1,18 @@
 //! Lights: those at a point, from a direction, from all around; and shapes that emit.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{MotionDesc, SpectrumDesc};
 use crate::error::Span;
+use crate::image_io::Image;
 
 /// A light that is not a shape.
 ///
-/// As in pbrt-v4, the spectrum is divided by its integral against the CIE y curve (for an RGB value: by that of the colour space's
-/// illuminant alone) and multiplied by `scale` and, if given, by `photometric` over the geometric factor: 4 pi for a point light, 1
-/// for a distant one, pi for an infinite one.
+/// As in pbrt-v4, the spectrum is divided by its integral against the CIE y curve (for an RGB value and for images: by that of the
+/// colour space's illuminant alone) and multiplied by `scale` and, if given, by `photometric` over the geometric factor, the power or
+/// illuminance of the same light with a luminance of 1: 4 pi for a point light, 1 for a distant one, pi for an infinite one.
 #[derive(Clone, Debug)]
 pub struct LightDesc {
     /// The type in the `LightSource` directive.
@@ -20,19 +23,42 @@ pub struct LightDesc {
     pub spectrum: Option<SpectrumDesc>,
     /// A factor; default 1; not negative.
     pub scale: f32,
-    /// `power` of a point light in lumen, `illuminance` of a distant or infinite one in lux; positive.
+    /// `power` in lumen, of a distant or infinite light `illuminance` in lux; positive.
     pub photometric: Option<f32>,
     /// pbrt's current transform; `from` and `to` are in light space.
     pub world_from_light: MotionDesc,
 }
 
-/// The kinds of lights.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The kinds of lights. Images are finite, in linear sRGB.
+#[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
     /// At a point, alike in all directions.
     Point {
         /// Default the origin.
         from: DVec3,
+    },
+    /// From a point into a cone.
+    Spot {
+        /// Default the origin.
+        from: DVec3,
+        /// A point on the axis, default (0, 0, 1); not `from`.
+        to: DVec3,
+        /// Between the axis and the rim, in degrees; default 30; more than 0, at most 180.
+        angle: f64,
+        /// Over how much of it the light falls off, in degrees; default 5; from 0 to `angle`.
+        delta: f64,
+    },
+    /// At the origin, with an intensity by direction.
+    Goniometric {
+        /// Factors of the intensity, the mean of the channels: square, equal-area octahedral, its pole in the direction +y.
+        image: Arc<Image>,
+    },
+    /// At the origin, throwing a picture towards +z.
+    Projection {
+        /// The picture.
+        image: Arc<Image>,
+        /// The angle of its shorter side, in degrees; default 90; between 0 and 180.
+        fov: f64,
     },
     /// Parallel light that travels from `from` towards `to`.
     Distant {
@@ -41,8 +67,15 @@ pub enum LightKind {
         /// Default (0, 0, 1); not `from`.
         to: DVec3,
     },
-    /// The same radiance from all directions.
-    Infinite,
+    /// From all directions.
+    Infinite {
+        /// Radiance by direction: equal-area octahedral if square, by latitude and longitude if twice as wide as high; its pole is
+        /// +z. `None`: the same from all directions.
+        image: Option<Arc<Image>>,
+        /// A rectangle, world space, that all of it comes through; only points from which it lies in the direction
+        /// (p3 - p0) x (p1 - p0) see it.
+        portal: Option<[DVec3; 4]>,
+    },
 }
 
 /// What a shape emits: the same radiance in all directions, on the side its normal points to. Normalised as for [`LightDesc`]; the
@@ -53,6 +86,9 @@ pub struct AreaLightDesc {
     pub span: Span,
     /// `L`; `None`: the colour space's illuminant.
     pub l: Option<SpectrumDesc>,
+    /// Radiance by texture coordinates instead of `l`: (0, 0) is the lower left corner of the image, (1, 1) the upper right one, and
+    /// its edges go on outside.
+    pub image: Option<Arc<Image>>,
     /// A factor; default 1; not negative.
     pub scale: f32,
     /// Total emitted power in lumen (per light, as in pbrt-v4: for each triangle of a mesh); positive.

@@ -16,6 +16,7 @@
 mod bytes;
 mod integrator;
 mod light;
+mod light_kinds;
 mod material;
 mod material_kinds;
 mod parameter;
@@ -38,6 +39,7 @@ pub use integrator::{
     Termination,
 };
 pub use light::{AreaLightDesc, LightDesc, LightKind};
+pub use light_kinds::{LIGHTS, LightEntry};
 pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, RoughnessDesc, SpectrumDesc,
     SpectrumValue,

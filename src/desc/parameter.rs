@@ -33,6 +33,14 @@ pub enum ParameterKind {
     },
     /// `vector3`.
     Vector([f64; 3]),
+    /// `point3`.
+    Point([f64; 3]),
+    /// `point3`: so many of them; there is no default.
+    Points(usize),
+    /// The spectrum of a light: `rgb`, `spectrum` or `blackbody`; by default the colour space's illuminant.
+    Emission,
+    /// `float`: a power or an illuminance, which counts if it is positive; there is no default.
+    Photometric,
     /// `string`: one of a few words.
     Choice {
         /// If none is given.
@@ -108,6 +116,10 @@ pub enum FloatRange {
     Unit,
     /// Between -1 and 1, both excluded.
     Asymmetry,
+    /// An angle of more than 0 and at most 180 degrees.
+    HalfTurn,
+    /// An angle of more than 0 and less than 180 degrees.
+    FieldOfView,
 }
 
 impl FloatRange {
@@ -120,6 +132,8 @@ impl FloatRange {
             Self::AtLeastOne => value >= 1.0,
             Self::Unit => (0.0..=1.0).contains(&value),
             Self::Asymmetry => value.abs() < 1.0,
+            Self::HalfTurn => value > 0.0 && value <= 180.0,
+            Self::FieldOfView => value > 0.0 && value < 180.0,
         }
     }
 
@@ -132,6 +146,8 @@ impl FloatRange {
             Self::AtLeastOne => "1 or more",
             Self::Unit => "between 0 and 1",
             Self::Asymmetry => "more than -1 and less than 1",
+            Self::HalfTurn => "more than 0 and at most 180",
+            Self::FieldOfView => "more than 0 and less than 180",
         }
     }
 }
@@ -142,8 +158,10 @@ impl ParameterKind {
         match self {
             Self::Bool(_) => "bool",
             Self::Integer { .. } => "integer",
-            Self::Float { .. } => "float",
+            Self::Float { .. } | Self::Photometric => "float",
             Self::Vector(_) => "vector3",
+            Self::Point(_) | Self::Points(_) => "point3",
+            Self::Emission => "rgb | spectrum | blackbody",
             Self::Choice { .. } | Self::Text { .. } | Self::File | Self::TwoMaterials => "string",
             Self::Value { .. } => "float | spectrum",
             Self::Textured { .. } => "float | spectrum | texture",
@@ -166,9 +184,14 @@ impl ParameterKind {
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Text { .. } => "see there".to_owned(),
             Self::File => "a file".to_owned(),
-            Self::Vector(_) | Self::Value { .. } | Self::Textured { .. } | Self::FloatTextured { .. } => {
-                "finite".to_owned()
-            }
+            Self::Points(count) => format!("{count} points"),
+            Self::Emission => "0 or more".to_owned(),
+            Self::Photometric => "positive".to_owned(),
+            Self::Vector(_)
+            | Self::Point(_)
+            | Self::Value { .. }
+            | Self::Textured { .. }
+            | Self::FloatTextured { .. } => "finite".to_owned(),
         }
     }
 
@@ -186,9 +209,10 @@ impl ParameterKind {
                 default.map_or(String::new(), |default| default.to_string())
             }
             Self::MetalIndex { default } | Self::MetalAbsorption { default } => (*default).to_owned(),
-            Self::Vector([x, y, z]) => format!("[ {x} {y} {z} ]"),
+            Self::Vector([x, y, z]) | Self::Point([x, y, z]) => format!("[ {x} {y} {z} ]"),
             Self::Choice { default, .. } | Self::Text { default } => (*default).to_owned(),
-            Self::File | Self::TwoMaterials => String::new(),
+            Self::Emission => "the colour space's illuminant".to_owned(),
+            Self::File | Self::TwoMaterials | Self::Points(_) | Self::Photometric => String::new(),
         }
     }
 }

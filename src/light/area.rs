@@ -1,76 +1,116 @@
-//! Surfaces that emit: single triangles and spheres.
+//! Surfaces that emit: single triangles, spheres and ellipsoids, at rest or in motion.
 
+use std::borrow::Cow;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
+use super::emitter::{Emitter, EmitterShape, SamplePlace};
+use super::image::EmissionImage;
+use super::moving::{MovingEmitter, sphere_shape};
 use super::{LightBounds, LightDensity, LightEnd, LightSample};
-use crate::geometry::{LEAST_ERROR, triangle_error};
-use crate::math::{Bounds3, DVec3, Frame, Vec2, Vec3, gamma};
-use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
+use crate::geometry::Sphere;
+use crate::math::{DMat3, DVec3, Vec2, Vec3};
+use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
-
-/// The surface of an area light. World space; it does not move.
-#[derive(Clone, Copy, Debug)]
-pub enum EmitterShape {
-    /// A triangle.
-    Triangle {
-        /// Its corners.
-        vertices: [Vec3; 3],
-        /// Unit geometric normal, on the side that emits.
-        ng: Vec3,
-    },
-    /// A sphere.
-    Sphere {
-        /// Its centre.
-        center: DVec3,
-        /// Its radius.
-        radius: f64,
-        /// Whether the normal, and so the side that emits, is inside.
-        inward: bool,
-    },
-}
 
 /// A surface that emits the same radiance in every direction of the side of its geometric normal, or of both.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
-    shape: EmitterShape,
+    /// At time 0 if it moves.
+    emitter: Emitter,
     area: f32,
-    /// Of a sampled point, see [`SurfaceInteraction::error`](crate::geometry::SurfaceInteraction::error); of a triangle only.
-    error: f32,
-    radiance: CompiledSpectrum,
+    motion: Option<Arc<MovingEmitter>>,
+    radiance: Radiance,
     two_sided: bool,
 }
 
-/// A point of an emitter.
-struct SurfaceSample {
-    p: Vec3,
-    error: f32,
-    ng: Vec3,
-    pdf: SolidAnglePdf,
+/// What each point of a surface emits.
+#[derive(Clone, Debug)]
+enum Radiance {
+    /// The same everywhere.
+    Constant(CompiledSpectrum),
+    /// By texture coordinates.
+    Image(Arc<ImageRadiance>),
+}
+
+#[derive(Clone, Debug)]
+struct ImageRadiance {
+    image: Arc<EmissionImage>,
+    scale: f32,
+    coordinates: Coordinates,
+    /// Luminance on average over the surface.
+    mean: f32,
+}
+
+/// Where texture coordinates of sampled points come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Coordinates {
+    /// Those of a triangle's corners.
+    Corners([Vec2; 3]),
+    /// Longitude and latitude of a sphere that does not move, which this takes to its own space.
+    Sphere(DMat3),
 }
 
 impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
         let area = shape.area();
-        (area > 0.0).then(|| Self {
+        Some(Self {
+            emitter: Emitter::new(shape)?,
             area,
-            error: shape.error(),
-            shape,
-            radiance,
+            motion: None,
+            radiance: Radiance::Constant(radiance),
             two_sided,
         })
+    }
+
+    /// A sphere that emits; an ellipsoid if its transform makes it one.
+    pub fn sphere(sphere: &Sphere, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
+        Self::new(sphere_shape(sphere), radiance, two_sided)
+    }
+
+    /// A surface that moves. `None` if it has no area at time 0.
+    pub fn moving(emitter: MovingEmitter, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
+        let at_start = emitter.at(0.0)?;
+        Some(Self {
+            area: at_start.shape.area(),
+            emitter: at_start,
+            motion: Some(Arc::new(emitter)),
+            radiance: Radiance::Constant(radiance),
+            two_sided,
+        })
+    }
+
+    /// With the radiances of an image by texture coordinates instead: (0, 0) is its lower left corner.
+    #[must_use]
+    pub fn with_image(self, image: Arc<EmissionImage>, coordinates: Coordinates) -> Self {
+        let mean = mean_luminance(&image, &coordinates);
+        let scale = 1.0;
+        Self {
+            radiance: Radiance::Image(Arc::new(ImageRadiance {
+                image,
+                scale,
+                coordinates,
+                mean,
+            })),
+            ..self
+        }
     }
 
     /// This light, `factor` times as bright.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        Self {
-            radiance: self.radiance.scaled(factor),
-            ..self
-        }
+        let radiance = match self.radiance {
+            Radiance::Constant(radiance) => Radiance::Constant(radiance.scaled(factor)),
+            Radiance::Image(radiance) => Radiance::Image(Arc::new(ImageRadiance {
+                scale: radiance.scale * factor,
+                ..(*radiance).clone()
+            })),
+        };
+        Self { radiance, ..self }
     }
 
-    /// Its surface area, one side.
+    /// Its surface area, one side; at time 0 if it moves.
     pub fn area(&self) -> f32 {
         self.area
     }
@@ -80,42 +120,38 @@ impl AreaLight {
         if self.two_sided { 2.0 } else { 1.0 }
     }
 
-    /// Radiance emitted in direction `w` where the geometric normal is `ng`.
+    /// Radiance emitted in direction `w` where the geometric normal is `ng` and the texture coordinates are `uv`.
     #[inline]
-    pub fn le(&self, ng: Vec3, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
-        if self.two_sided || ng.dot(w) > 0.0 {
-            self.radiance.sample(lambda)
-        } else {
-            SampledSpectrum::ZERO
+    pub fn le(&self, ng: Vec3, uv: Vec2, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
+        if !self.two_sided && ng.dot(w) <= 0.0 {
+            return SampledSpectrum::ZERO;
+        }
+        match &self.radiance {
+            Radiance::Constant(radiance) => radiance.sample(lambda),
+            Radiance::Image(radiance) => radiance.image.sample_bilinear(uv, lambda) * radiance.scale,
         }
     }
 
-    /// Density, by solid angle at `from`, of the point `p` of the light, where its geometric normal is `ng`.
+    /// The emitter at a time; `None` if it has no area then.
     #[inline]
-    pub fn pdf_li(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
-        if let EmitterShape::Sphere { center, radius, .. } = self.shape
-            && let Some(cone) = Cone::towards(from, center, radius)
-        {
-            return warp::uniform_cone_pdf(cone.one_minus_cos);
+    fn at(&self, time: f32) -> Option<Cow<'_, Emitter>> {
+        match &self.motion {
+            None => Some(Cow::Borrowed(&self.emitter)),
+            Some(motion) => motion.at(time).map(Cow::Owned),
         }
-        self.uniform_pdf(from, p, ng)
     }
 
-    /// The density by solid angle of a point chosen uniformly by area.
-    fn uniform_pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
-        let to_light = p - from;
-        let distance_squared = to_light.length_squared();
-        let cos = ng.dot(to_light).abs() / distance_squared.sqrt();
-        AreaPdf(1.0 / self.area).to_solid_angle(distance_squared, cos)
+    /// Density, by solid angle at `from`, of the point `p` of the light at `time`, where its geometric normal is `ng`.
+    #[inline]
+    pub fn pdf_li(&self, from: Vec3, p: Vec3, ng: Vec3, time: f32) -> SolidAnglePdf {
+        self.at(time)
+            .map_or(SolidAnglePdf(0.0), |emitter| emitter.pdf(from, p, ng))
     }
 
-    pub(super) fn sample_li(&self, from: Vec3, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
-        let sample = match &self.shape {
-            EmitterShape::Triangle { vertices, ng } => self.sample_triangle(vertices, *ng, from, u),
-            EmitterShape::Sphere { center, radius, inward } => self.sample_sphere(*center, *radius, *inward, from, u),
-        };
+    pub(super) fn sample_li(&self, from: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
+        let sample = self.at(time)?.sample(from, u);
         let wi = (sample.p - from).try_normalize()?;
-        let li = self.le(sample.ng, -wi, lambda);
+        let li = self.le(sample.ng, self.uv(sample.at, time), -wi, lambda);
         (sample.pdf.0 > 0.0 && sample.pdf.0.is_finite() && !li.is_black()).then_some(LightSample {
             li,
             wi,
@@ -128,125 +164,85 @@ impl AreaLight {
         })
     }
 
-    fn sample_triangle(&self, vertices: &[Vec3; 3], ng: Vec3, from: Vec3, u: Vec2) -> SurfaceSample {
-        let b = warp::sample_uniform_triangle(u);
-        let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
-        SurfaceSample {
-            p,
-            error: self.error,
-            ng,
-            pdf: self.uniform_pdf(from, p, ng),
-        }
+    /// The texture coordinates of a sampled point, if anything depends on them.
+    fn uv(&self, at: SamplePlace, time: f32) -> Vec2 {
+        let Radiance::Image(radiance) = &self.radiance else {
+            return Vec2::ZERO;
+        };
+        let in_world = match (at, &radiance.coordinates) {
+            (SamplePlace::Triangle(b), Coordinates::Corners([p, q, r])) => return *p * b.x + *q * b.y + *r * b.z,
+            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) => return Vec2::ZERO,
+            (SamplePlace::Ellipsoid(outward), _) => return sphere_uv(outward),
+            (SamplePlace::Sphere(outward), _) => outward,
+        };
+        let moving = self.motion.as_ref().and_then(|motion| motion.object_from_world(time));
+        let object_from_world = match (moving, radiance.coordinates) {
+            (Some(moving), _) => moving,
+            (None, Coordinates::Sphere(fixed)) => fixed,
+            (None, Coordinates::Corners(_)) => DMat3::IDENTITY,
+        };
+        sphere_uv((object_from_world * in_world).normalize())
     }
 
-    /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside or from the
-    /// sphere itself.
-    fn sample_sphere(&self, center: DVec3, radius: f64, inward: bool, from: Vec3, u: Vec2) -> SurfaceSample {
-        let cone = Cone::towards(from, center, radius);
-        let outward = match &cone {
-            Some(cone) => cone.surface_direction(warp::sample_uniform_cone(u, cone.one_minus_cos), radius),
-            None => warp::sample_uniform_sphere(u).as_dvec3(),
-        };
-        let p = (center + outward * radius).as_vec3();
-        let ng = if inward { -outward } else { outward }.as_vec3();
-        let pdf = match &cone {
-            Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
-            None => self.uniform_pdf(from, p, ng),
-        };
-        SurfaceSample {
-            p,
-            error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
-            ng,
-            pdf,
+    /// Luminance on average over the surface.
+    fn luminance(&self) -> f32 {
+        match &self.radiance {
+            Radiance::Constant(radiance) => radiance.photometric_luminance(),
+            Radiance::Image(radiance) => radiance.mean * radiance.scale,
         }
     }
 
     pub(super) fn bounds(&self) -> LightBounds {
-        let radiance = self.radiance.photometric_luminance();
-        match &self.shape {
-            EmitterShape::Triangle { vertices, ng } => LightBounds {
-                bounds: Bounds3::from_points(*vertices),
+        let (luminance, area) = (self.luminance(), self.area);
+        if let Some(motion) = &self.motion {
+            return LightBounds::omnidirectional(motion.bounds(), luminance * area);
+        }
+        let bounds = self.emitter.shape.bounds();
+        match &self.emitter.shape {
+            EmitterShape::Triangle { ng, .. } => LightBounds {
+                bounds,
                 axis: *ng,
                 cos_normals: 1.0,
                 cos_emission: 0.0,
-                intensity: radiance * self.area,
+                intensity: luminance * area,
                 two_sided: self.two_sided,
             },
-            // Of a sphere no more than half is seen from outside, and all of its area faces a point inside.
-            EmitterShape::Sphere { center, radius, .. } => {
-                let (center, radius) = (center.as_vec3(), *radius as f32);
-                LightBounds::omnidirectional(
-                    Bounds3::from_points([center]).expand(radius),
-                    radiance * PI * radius * radius,
-                )
+            // From outside about a quarter of the area is seen, projected.
+            EmitterShape::Sphere { .. } | EmitterShape::Ellipsoid(_) => {
+                LightBounds::omnidirectional(bounds, luminance * 0.25 * area)
             }
         }
     }
 
+    /// At time 0 if it moves.
     pub(super) fn power(&self) -> f32 {
-        self.sides() * PI * self.area * self.radiance.photometric_luminance()
+        self.sides() * PI * self.area * self.luminance()
     }
 }
 
-impl EmitterShape {
-    /// Of any point sampled on a triangle: that of its plane, and the rounding of three weighted corners.
-    fn error(&self) -> f32 {
-        match self {
-            Self::Triangle { vertices, ng } => {
-                let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
+/// Texture coordinates of a point of a sphere, by its unit direction from the centre in object space.
+fn sphere_uv(outward: DVec3) -> Vec2 {
+    let turn = outward.y.atan2(outward.x) / std::f64::consts::TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    let height = 1.0 - outward.z.clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+    Vec2::new(turn as f32, height as f32)
+}
+
+/// The mean luminance over a surface, by 1024 points; more than nothing if anything in the image emits, as points may miss it.
+fn mean_luminance(image: &EmissionImage, coordinates: &Coordinates) -> f32 {
+    const STEPS: usize = 32;
+    let [width, height] = image.size();
+    let whole = image.sum(|_, _| 1.0) / (width * height) as f32;
+    let mean = (0..STEPS * STEPS).map(|i| {
+        let u = (Vec2::new((i % STEPS) as f32, (i / STEPS) as f32) + 0.5) / STEPS as f32;
+        let uv = match coordinates {
+            Coordinates::Corners([p, q, r]) => {
+                let b = crate::sampling::warp::sample_uniform_triangle(u);
+                *p * b.x + *q * b.y + *r * b.z
             }
-            Self::Sphere { .. } => 0.0,
-        }
-    }
-
-    fn area(&self) -> f32 {
-        match self {
-            Self::Triangle {
-                vertices: [a, b, c], ..
-            } => 0.5 * (*b - *a).cross(*c - *a).length(),
-            Self::Sphere { radius, .. } => (4.0 * std::f64::consts::PI * radius * radius) as f32,
-        }
-    }
-}
-
-/// The cone of directions in which a sphere is seen from a point outside.
-struct Cone {
-    /// Unit direction to the centre.
-    axis: DVec3,
-    /// Distance to the centre.
-    distance: f64,
-    /// 1 - cos of its half angle, without cancellation.
-    one_minus_cos: f32,
-}
-
-impl Cone {
-    /// `None` from inside the sphere, and from so near to it that `from`, rounded to single precision, may stand for a point
-    /// inside: on the sphere itself half of all points seem to be outside.
-    fn towards(from: Vec3, center: DVec3, radius: f64) -> Option<Self> {
-        let to_center = center - from.as_dvec3();
-        let distance = to_center.length();
-        let rounding = f64::from(gamma(1) * (from.x.abs() + from.y.abs() + from.z.abs()));
-        if distance <= radius + rounding {
-            return None;
-        }
-        let sin = radius / distance;
-        let one_minus_cos = sin * sin / (1.0 + (1.0 - sin * sin).sqrt());
-        Some(Self {
-            axis: to_center / distance,
-            distance,
-            one_minus_cos: one_minus_cos as f32,
-        })
-    }
-
-    /// The direction from the sphere's centre to the point where it is first met along `w`, a direction in the cone's local frame.
-    fn surface_direction(&self, w: Vec3, radius: f64) -> DVec3 {
-        let sin2 = f64::from(w.x) * f64::from(w.x) + f64::from(w.y) * f64::from(w.y);
-        let cos = (1.0 - sin2).max(0.0).sqrt();
-        let to_line2 = self.distance * self.distance * sin2;
-        let t = self.distance * cos - (radius * radius - to_line2).max(0.0).sqrt();
-        let frame = Frame::from_normal(self.axis.as_vec3());
-        let across = (frame.s * w.x + frame.t * w.y).as_dvec3();
-        ((across + self.axis * cos) * t - self.axis * self.distance).normalize()
-    }
+            Coordinates::Sphere(_) => sphere_uv(crate::sampling::warp::sample_uniform_sphere(u).as_dvec3()),
+        };
+        image.luminance_bilinear(uv)
+    });
+    (mean.sum::<f32>() / (STEPS * STEPS) as f32).max(1e-3 * whole)
 }

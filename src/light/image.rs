@@ -1,5 +1,6 @@
 //! Images that emit.
 
+use crate::math::Vec2;
 use crate::spectrum::{EmissionPixel, RgbEmission, SampledSpectrum, Wavelengths, rgb_luminance};
 
 /// An image in linear sRGB whose pixels are emission: (1, 1, 1) is D65 with the luminance that a light of spectrum 1 has.
@@ -49,6 +50,42 @@ impl EmissionImage {
     #[inline]
     pub fn luminance(&self, x: usize, y: usize) -> f32 {
         self.luminances[y * self.size[0] + x] * self.scale
+    }
+
+    /// The emission at texture coordinates, between the middles of the pixels: (0, 0) is the lower left corner of the image, (1, 1)
+    /// the upper right one, and outside its edges go on.
+    pub fn sample_bilinear(&self, uv: Vec2, lambda: &Wavelengths) -> SampledSpectrum {
+        let mut sum = SampledSpectrum::ZERO;
+        for (x, y, weight) in self.neighbours(uv) {
+            if weight > 0.0 {
+                sum += self.sample(x, y, lambda) * weight;
+            }
+        }
+        sum
+    }
+
+    /// The luminance of [`Self::sample_bilinear`].
+    pub fn luminance_bilinear(&self, uv: Vec2) -> f32 {
+        let pixels = self.neighbours(uv).into_iter();
+        pixels.map(|(x, y, weight)| self.luminance(x, y) * weight).sum()
+    }
+
+    /// The four pixels around a point, and their weights.
+    fn neighbours(&self, uv: Vec2) -> [(usize, usize, f32); 4] {
+        let [width, height] = self.size;
+        let along = |c: f32, count: usize| {
+            let at = (c * count as f32 - 0.5).clamp(0.0, (count - 1) as f32);
+            let first = (at as usize).min(count - 1);
+            (first, (first + 1).min(count - 1), at - first as f32)
+        };
+        let (x0, x1, fx) = along(uv.x, width);
+        let (y0, y1, fy) = along(1.0 - uv.y, height);
+        [
+            (x0, y0, (1.0 - fx) * (1.0 - fy)),
+            (x1, y0, fx * (1.0 - fy)),
+            (x0, y1, (1.0 - fx) * fy),
+            (x1, y1, fx * fy),
+        ]
     }
 
     /// The sum over all pixels of luminance times a weight, by column and row.

@@ -4,9 +4,11 @@ mod area;
 mod bounds;
 mod bvh;
 mod delta;
+mod emitter;
 mod environment;
 mod goniometric;
 mod image;
+mod moving;
 mod place;
 mod portal;
 mod projection;
@@ -14,12 +16,14 @@ mod sampler;
 mod sky;
 mod spot;
 
-pub use area::{AreaLight, EmitterShape};
+pub use area::{AreaLight, Coordinates};
 pub use bounds::LightBounds;
 pub use delta::{DistantLight, PointLight};
+pub use emitter::EmitterShape;
 pub use environment::EnvironmentLight;
 pub use goniometric::GoniometricLight;
 pub use image::EmissionImage;
+pub use moving::{MovingEmitter, Side};
 pub use place::{Place, facing};
 pub use portal::{Behind, Portal, PortalEnvironment};
 pub use projection::ProjectionLight;
@@ -106,7 +110,7 @@ impl Light {
     #[inline]
     pub fn sample_li(&self, p: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
         match self {
-            Self::Area(light) => light.sample_li(p, u, lambda),
+            Self::Area(light) => light.sample_li(p, time, u, lambda),
             Self::Point(light) => light.sample_li(p, time, lambda),
             Self::Spot(light) => light.sample_li(p, time, lambda),
             Self::Goniometric(light) => light.sample_li(p, time, lambda),
@@ -120,7 +124,7 @@ impl Light {
     #[inline]
     pub fn le(&self, si: &SurfaceInteraction, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
         match self {
-            Self::Area(light) => light.le(si.ng, w, lambda),
+            Self::Area(light) => light.le(si.ng, si.uv, w, lambda),
             _ => SampledSpectrum::ZERO,
         }
     }
@@ -129,7 +133,7 @@ impl Light {
     #[inline]
     pub fn pdf_li(&self, p: Vec3, si: &SurfaceInteraction) -> SolidAnglePdf {
         match self {
-            Self::Area(light) => light.pdf_li(p, si.p, si.ng),
+            Self::Area(light) => light.pdf_li(p, si.p, si.ng, si.time),
             _ => SolidAnglePdf(0.0),
         }
     }

@@ -102,7 +102,8 @@ impl ProjectionLight {
         }
     }
 
-    pub(super) fn power(&self) -> f32 {
+    /// See [`Light::power`](super::Light::power).
+    pub fn power(&self) -> f32 {
         self.image.sum(|x, y| self.screen.solid_angle(x, y))
     }
 }

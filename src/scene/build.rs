@@ -3,19 +3,18 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::lights::LightBuilder;
 use super::materials::compile_materials;
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
 use super::textures::TextureCompiler;
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
+use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
-use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
-use crate::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
-};
-use crate::math::DVec3;
+use crate::geometry::{Geometry, GeometryId, Group, Instance, WorldBuilder};
+use crate::light::{LightId, LightSampler};
+use crate::math::AnimatedTransform;
 
 /// What is collected while shapes and lights are gone through.
 struct SceneBuilder<'a> {
@@ -23,8 +22,7 @@ struct SceneBuilder<'a> {
     spectra: SpectrumCompiler,
     world: WorldBuilder,
     surfaces: Vec<Surface>,
-    lights: Vec<Light>,
-    environments: Vec<LightId>,
+    lights: LightBuilder,
     problems: Vec<Diagnostic>,
 }
 
@@ -39,13 +37,16 @@ impl Scene {
             spectra: SpectrumCompiler { mode: options.color },
             world: WorldBuilder::default(),
             surfaces: Vec::new(),
-            lights: Vec::new(),
-            environments: Vec::new(),
+            lights: LightBuilder::new(options.color),
             problems: Vec::new(),
         };
         builder.add_shapes();
         builder.add_objects();
-        desc.lights.iter().for_each(|light| builder.add_light(light));
+        for light in &desc.lights {
+            if let Err(message) = builder.lights.add(light) {
+                builder.problem(light.span, message);
+            }
+        }
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
@@ -57,9 +58,9 @@ impl Scene {
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
         let light_sampler = match desc.integrator.light_sampler {
-            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
-            LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
-            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),
+            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
+            LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
+            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights.lights),
         };
         Ok(Self {
             world,
@@ -68,8 +69,8 @@ impl Scene {
             bounds,
             materials,
             surfaces: builder.surfaces,
-            lights: builder.lights,
-            environments: builder.environments,
+            lights: builder.lights.lights,
+            environments: builder.lights.environments,
             light_sampler,
             build_seconds,
         })
@@ -130,7 +131,7 @@ impl SceneBuilder<'_> {
         };
         let lights = match &shape.area_light {
             None => Vec::new(),
-            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.is_some()),
+            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.as_ref()),
         };
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
@@ -149,98 +150,15 @@ impl SceneBuilder<'_> {
     }
 
     /// One light for each primitive that has an area.
-    fn add_area_lights(&mut self, desc: &AreaLightDesc, geometry: &Geometry, moves: bool) -> Vec<Option<LightId>> {
-        let emitters = match &geometry.shape {
-            _ if moves => Err("an area light on a moving shape is not supported yet"),
-            Shape::Mesh(mesh) => triangle_emitters(mesh),
-            Shape::Spheres(spheres) => spheres
-                .iter()
-                .map(|sphere| {
-                    let scale = uniform_scale(&sphere.world_from_object().matrix3);
-                    let radius = sphere.radius() * scale.ok_or("an area light on an ellipsoid is not supported")?;
-                    Ok(EmitterShape::Sphere {
-                        center: sphere.center(),
-                        radius,
-                        inward: sphere.has_flipped_normal(),
-                    })
-                })
-                .collect(),
-        };
-        let emitters = match emitters {
-            Ok(emitters) => emitters,
-            Err(message) => {
-                self.problem(desc.span, message);
-                return Vec::new();
-            }
-        };
-        let radiance = self.spectra.emission(desc.l.as_ref());
-        let add = |emitter| {
-            let light = AreaLight::new(emitter, radiance.scaled(desc.scale), desc.two_sided)?;
-            // As in pbrt-v4 the power is that of each light: of one triangle.
-            let light = match desc.power {
-                Some(power) => {
-                    let geometric = light.sides() * std::f32::consts::PI * light.area();
-                    light.scaled(power / geometric)
-                }
-                None => light,
-            };
-            self.lights.push(Light::Area(light));
-            Some(LightId(self.lights.len() as u32 - 1))
-        };
-        emitters.into_iter().map(add).collect()
-    }
-
-    fn add_light(&mut self, desc: &LightDesc) {
-        if !desc.world_from_light.is_static() {
-            self.problem(desc.span, "a moving light is not supported yet");
-            return;
-        }
-        let world_from_light = desc.world_from_light.start;
-        // pbrt-v4: a photometric value replaces the luminance, the scale stays a factor.
-        let scale = |geometric: f32| desc.scale * desc.photometric.map_or(1.0, |value| value / geometric);
-        let spectrum = self.spectra.emission(desc.spectrum.as_ref());
-        let pi = std::f32::consts::PI;
-        let light = match desc.kind {
-            LightKind::Point { from } => {
-                let position = world_from_light.transform_point3(from).as_vec3();
-                Light::Point(PointLight::new(
-                    Place::at_point(position),
-                    spectrum.scaled(scale(4.0 * pi)),
-                ))
-            }
-            LightKind::Distant { from, to } => {
-                let towards = world_from_light.transform_vector3(from - to).normalize();
-                Light::Distant(DistantLight::new(
-                    Place::facing(DVec3::ZERO, towards),
-                    spectrum.scaled(scale(1.0)),
-                ))
-            }
-            LightKind::Infinite => {
-                self.environments.push(LightId(self.lights.len() as u32));
-                Light::Environment(EnvironmentLight::Constant(spectrum.scaled(scale(pi))))
-            }
-        };
-        self.lights.push(light);
-    }
-}
-
-fn triangle_emitters(mesh: &TriangleMesh) -> Result<Vec<EmitterShape>, &'static str> {
-    if mesh.is_moving() {
-        return Err("an area light on a moving mesh is not supported yet");
-    }
-    Ok((0..mesh.triangle_count())
-        .map(|triangle| EmitterShape::Triangle {
-            vertices: mesh.triangle(triangle, 0.0),
-            ng: mesh.geometric_normal(triangle),
+    fn add_area_lights(
+        &mut self,
+        desc: &AreaLightDesc,
+        geometry: &Geometry,
+        motion: Option<&AnimatedTransform>,
+    ) -> Vec<Option<LightId>> {
+        self.lights.add_area(desc, geometry, motion).unwrap_or_else(|message| {
+            self.problem(desc.span, message);
+            Vec::new()
         })
-        .collect())
-}
-
-/// The factor of a rotation with uniform scale; `None` for any other matrix.
-fn uniform_scale(m: &crate::math::DMat3) -> Option<f64> {
-    let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-    let scale = lengths.x;
-    let orthogonal = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
-    let uniform = (lengths - DVec3::splat(scale)).abs().max_element() <= 1e-6 * scale;
-    (uniform && orthogonal.iter().all(|d| d.abs() <= 1e-6 * scale * scale)).then_some(scale)
+    }
 }

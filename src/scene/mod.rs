@@ -2,6 +2,7 @@
 //! outlives renders and serves many [`View`]s.
 
 mod build;
+mod lights;
 mod materials;
 mod shapes;
 mod spectra;

@@ -14,11 +14,11 @@ const SPP: u32 = 256;
 
 /// Judges a diffuse plane at z = Z where `lights`, which are white and above it, give the irradiance `e`. The camera looks straight
 /// down on x, y in [-2, 2] from just above the plane, so that no light is in its way.
-fn check_irradiance(name: &str, max_depth: i32, lights: &str, e: impl Fn(DVec3) -> f64) {
+pub(super) fn check_irradiance(name: &str, max_depth: i32, lights: &str, e: impl Fn(DVec3) -> f64) {
     check_with(name, SPP, &options(max_depth), lights, e);
 }
 
-fn check_with(name: &str, spp: u32, options: &str, lights: &str, e: impl Fn(DVec3) -> f64) {
+pub(super) fn check_with(name: &str, spp: u32, options: &str, lights: &str, e: impl Fn(DVec3) -> f64) {
     let text = format!(
         "LookAt 0 0 0.36  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-2 2 -2 2]\n{options}WorldBegin\n\
          {lights}\nMaterial \"diffuse\" \"rgb reflectance\" [{RHO} {RHO} {RHO}]\n{}",
@@ -56,7 +56,7 @@ fn a_sphere_lights_as_its_cross_section() {
 }
 
 /// Lambert's formula: the irradiance of a polygon of radiance 1 that is above the horizon of `p`.
-fn polygon_irradiance(p: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
+pub(super) fn polygon_irradiance(p: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {
     let edges = (0..corners.len()).map(|i| {
         let [a, b] = [corners[i] - p, corners[(i + 1) % corners.len()] - p].map(DVec3::normalize);
         let angle = a.cross(b).length().atan2(a.dot(b));

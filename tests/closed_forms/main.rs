@@ -10,6 +10,7 @@ mod emission;
 mod enclosures;
 mod interfaces;
 mod irradiance;
+mod lights;
 mod motion;
 
 use common::effort;

@@ -309,19 +309,15 @@ fn entities() {
             "",
         ),
         ("WorldBegin Material @\"difuse\"", "unknown material", "`diffuse`"),
-        (
-            "WorldBegin LightSource @\"spot\"",
-            "the light `spot` is not supported yet",
-            "",
-        ),
+        ("WorldBegin LightSource @\"sopt\"", "unknown light `sopt`", "`spot`"),
         (
             "WorldBegin AreaLightSource @\"difuse\"",
             "unknown area light",
             "`diffuse`",
         ),
         (
-            "WorldBegin AreaLightSource \"diffuse\" @\"string filename\" \"x\"",
-            "not supported yet",
+            "WorldBegin AreaLightSource \"diffuse\" \"string filename\" @\"x\"",
+            "cannot read x",
             "",
         ),
         (
@@ -555,7 +551,7 @@ fn lenient_reading_turns_the_unknown_into_warnings() {
         Material "subsurface" "float thickness" 3
         Shape "sphere" "float what" 3 "float zmin" 0
         Shape "disk"
-        LightSource "spot"
+        LightSource "laser"
         Wibble 1 2 3 "float x" [ 1 ]
         NamedMaterial "nobody"
         AttributeBegin AreaLightSource "diffuse" ObjectBegin "o" Shape "sphere" ObjectEnd AttributeEnd"#;

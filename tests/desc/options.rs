@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    CameraKind, CropDesc, FilterKind, IntegratorDesc, LightSamplerKind, MotionDesc, PixelRect, SamplerKind,
+    CameraKind, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc,
+    LightSamplerKind, MotionDesc, PathDesc, PixelRect, SamplerKind, Strategy, Termination,
 };
 
 use crate::scene;
@@ -32,9 +33,14 @@ fn defaults_are_those_of_pbrt() {
     assert_eq!(view.filter.radius, [1.5, 1.5]);
     assert_eq!(view.sampler.kind, SamplerKind::Sobol);
     assert_eq!(view.sampler.pixel_samples, 16);
-    let path = IntegratorDesc::Path {
+    let path = IntegratorDesc {
         max_depth: Some(5),
         light_sampler: LightSamplerKind::Bvh,
+        kind: IntegratorKind::Path(PathDesc {
+            strategy: Strategy::Mis,
+            heuristic: Heuristic::Power,
+            splitting: 1,
+        }),
     };
     assert_eq!(scene.integrator, path);
     assert_eq!(scene.transform_times, [0.0, 1.0]);
@@ -54,6 +60,7 @@ fn every_parameter_arrives() {
         PixelFilter "mitchell" "float xradius" 3 "float B" .5 "float C" .25
         Sampler "independent"
         Integrator "path" "integer maxdepth" -1 "string lightsampler" "power" "bool regularize" false
+            "string strategy" "light" "string heuristic" "balance" "integer splitting" 4
         WorldBegin"#,
     );
     let view = &scene.views[0];
@@ -78,13 +85,42 @@ fn every_parameter_arrives() {
     assert_eq!(view.filter.radius, [3.0, 2.0]);
     assert_eq!(view.sampler.kind, SamplerKind::Independent);
     assert_eq!(view.sampler.pixel_samples, 4);
-    let path = IntegratorDesc::Path {
+    let path = IntegratorDesc {
         max_depth: None,
         light_sampler: LightSamplerKind::Power,
+        kind: IntegratorKind::Path(PathDesc {
+            strategy: Strategy::Light,
+            heuristic: Heuristic::Balance,
+            splitting: 4,
+        }),
     };
     assert_eq!(scene.integrator, path);
     assert_eq!(scene.transform_times, [1.0, 3.0]);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn the_oracle_has_its_parameters() {
+    let kind = |parameters: &str| {
+        scene(&format!("Integrator \"kajiya\" {parameters}\nWorldBegin"))
+            .integrator
+            .kind
+    };
+    assert_eq!(kind(""), IntegratorKind::Kajiya(KajiyaDesc::default()));
+    let all = kind(
+        r#""float alpha" 0.25 "integer branching" 3 "string distribution" "uniform" "string termination" "albedo""#,
+    );
+    let expected = KajiyaDesc {
+        termination: Termination::Albedo,
+        branching: 3,
+        distribution: Distribution::Uniform,
+    };
+    assert_eq!(all, IntegratorKind::Kajiya(expected));
+    let IntegratorKind::Kajiya(constant) = kind(r#""float alpha" 0.25 "string distribution" "cosine""#) else {
+        panic!("another integrator");
+    };
+    assert_eq!(constant.termination, Termination::Constant(0.25));
+    assert_eq!(constant.distribution, Distribution::Cosine);
 }
 
 #[test]

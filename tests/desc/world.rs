@@ -225,7 +225,8 @@ fn lights_have_the_parameters_of_pbrt() {
     assert_eq!(distant.kind, LightKind::Distant { from, to });
     assert_eq!(value(distant), Some(SpectrumValue::Blackbody(5000.0)));
     assert_eq!((distant.scale, distant.photometric), (3.0, Some(10.0)));
-    assert_eq!(infinite.kind, LightKind::Infinite);
+    let (image, portal) = (None, None);
+    assert_eq!(infinite.kind, LightKind::Infinite { image, portal });
     assert_eq!((value(infinite), infinite.photometric), (None, None));
     assert!(
         scene

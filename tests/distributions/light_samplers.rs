@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use lucerna::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, PointLight,
+    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
 };
 use lucerna::math::Bounds3;
 use lucerna::sampling::warp;
@@ -40,7 +40,7 @@ fn random_light(random: &mut Random) -> Light {
     };
     let size = (-4.0 * random.unit()).exp();
     let shape = match (random.unit() * 4.0) as u32 {
-        0 => return Light::Point(PointLight::new(p, constant(brightness))),
+        0 => return Light::Point(PointLight::new(Place::at_point(p), constant(brightness))),
         1 => EmitterShape::Sphere {
             center: p.as_dvec3(),
             radius: f64::from(size),
@@ -62,9 +62,9 @@ fn lights(count: usize, infinite: usize, seed: u64) -> Vec<Light> {
     let mut lights: Vec<Light> = (0..count).map(|_| random_light(&mut random)).collect();
     for i in 0..infinite {
         let light = if i % 2 == 0 {
-            Light::Environment(EnvironmentLight::new(constant(0.5)))
+            Light::Environment(EnvironmentLight::Constant(constant(0.5)))
         } else {
-            Light::Distant(DistantLight::new(Vec3::Z, constant(2.0)))
+            Light::Distant(DistantLight::new(Place::facing(DVec3::ZERO, DVec3::Z), constant(2.0)))
         };
         lights.insert(count / 2, light);
     }
@@ -110,7 +110,7 @@ fn probabilities_add_up_to_one_and_no_light_that_shines_is_left_out() {
             let pmfs = (0..lights.len()).map(|i| sampler.pmf(p, n, LightId(i as u32)));
             let sum: f64 = pmfs.clone().map(f64::from).sum();
             let shines = |light: &Light| {
-                let sample = light.sample_li(p, Vec2::new(random.unit(), random.unit()), &lambda);
+                let sample = light.sample_li(p, 0.0, Vec2::new(random.unit(), random.unit()), &lambda);
                 sample.is_some_and(|sample| sample.li.max_value() > 0.0)
             };
             let shining: Vec<bool> = lights.iter().map(shines).collect();
@@ -157,7 +157,7 @@ fn lights_are_chosen_with_their_probability() {
 #[test]
 fn uniform_and_power_are_what_they_say_and_nothing_is_chosen_of_nothing() {
     let levels = [0.5, 0.0, 3.0, 1.0, 0.01];
-    let lights = levels.map(|l| Light::Point(PointLight::new(Vec3::ZERO, constant(l))));
+    let lights = levels.map(|l| Light::Point(PointLight::new(Place::at_point(Vec3::ZERO), constant(l))));
     for (i, level) in levels.into_iter().enumerate() {
         let id = LightId(i as u32);
         assert!((LightSampler::uniform(&lights).pmf(Vec3::ONE, Vec3::Z, id) - 0.2).abs() < 1e-6);
@@ -199,7 +199,7 @@ fn the_tree_knows_what_matters() {
             let (p, n) = (Vec3::new(0.3, -0.2, 0.7), Vec3::Z);
             let u = random.unit4();
             let value = sampler.sample(p, n, u[2]).map_or(0.0, |chosen| {
-                let sample = lights[chosen.light.index()].sample_li(p, first_two(u), &lambda);
+                let sample = lights[chosen.light.index()].sample_li(p, 0.0, first_two(u), &lambda);
                 sample.map_or(0.0, |s| match s.density {
                     lucerna::light::LightDensity::Continuous(pdf) => {
                         f64::from(s.li.0[0] * s.wi.dot(n).max(0.0) / (pdf.0 * chosen.pmf))

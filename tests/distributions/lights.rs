@@ -2,13 +2,15 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
+use lucerna::geometry::Sphere;
 use lucerna::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightDensity, LightEnd, PointLight,
+    AreaLight, DistantLight, EmissionImage, EmitterShape, EnvironmentLight, GoniometricLight, Light, LightDensity,
+    LightEnd, MovingEmitter, Place, PointLight, ProjectionLight, Side, SpotLight,
 };
-use lucerna::math::Bounds3;
+use lucerna::math::{AnimatedTransform, Bounds3};
 use lucerna::sampling::warp;
-use lucerna::spectrum::{ColorMode, CompiledSpectrum, Spectrum, SpectrumRole, Wavelengths, cie};
+use lucerna::spectrum::{ColorMode, CompiledSpectrum, RgbEmission, Spectrum, SpectrumRole, Wavelengths, cie};
 
 use super::common::chi2::Chi2;
 use super::common::means::{FEWEST_RUNS, Means};
@@ -71,7 +73,7 @@ fn spheres_are_sampled_with_their_density() {
         let name = format!("sphere of {radius} at {distance}");
         let report = Chi2::new([[-PI, PI], [0.0, widest]]).of(TESTS).run(
             |u| {
-                let sample = turned.sample_li(Vec3::ZERO, first_two(u), &wavelengths())?;
+                let sample = turned.sample_li(Vec3::ZERO, 0.0, first_two(u), &wavelengths())?;
                 let w = sample.wi.as_dvec3();
                 let sin2 = w.x * w.x + w.y * w.y;
                 let one_minus_cos = if w.z > 0.0 { sin2 / (1.0 + w.z) } else { 1.0 - w.z };
@@ -85,7 +87,7 @@ fn spheres_are_sampled_with_their_density() {
                 let t = distance * cos + if outside { -half } else { half };
                 let p = w * t;
                 let ng = (p - DVec3::Z * distance) / radius;
-                f64::from(area.pdf_li(Vec3::ZERO, p.as_vec3(), ng.as_vec3()).0)
+                f64::from(area.pdf_li(Vec3::ZERO, p.as_vec3(), ng.as_vec3(), 0.0).0)
             },
         );
         report.assert_ok(&name);
@@ -105,7 +107,7 @@ fn triangles_are_sampled_with_their_density() {
         let Light::Area(area) = &light else { unreachable!() };
         let report = Chi2::new([[0.0, 1.0]; 2]).of(TESTS).run(
             |u| {
-                let sample = light.sample_li(from, first_two(u), &wavelengths())?;
+                let sample = light.sample_li(from, 0.0, first_two(u), &wavelengths())?;
                 let LightEnd::Point { p, .. } = sample.end else {
                     panic!("a triangle is not infinitely far away");
                 };
@@ -122,7 +124,7 @@ fn triangles_are_sampled_with_their_density() {
                 let p = a * wa + b * wb + c * (1.0 - wa - wb);
                 let d = p - from.as_dvec3();
                 let n = normal.normalize();
-                let pdf_w = f64::from(area.pdf_li(from, p.as_vec3(), n.as_vec3()).0);
+                let pdf_w = f64::from(area.pdf_li(from, p.as_vec3(), n.as_vec3(), 0.0).0);
                 pdf_w * d.dot(n).abs() / d.length().powi(3) * normal.length()
             },
         );
@@ -137,13 +139,13 @@ fn check_stated_density(light: &Light, from: Vec3, name: &str) {
     let mut random = Random::new(11);
     let mut sampled = 0;
     for _ in 0..500 {
-        let Some(sample) = light.sample_li(from, first_two(random.unit4()), &wavelengths()) else {
+        let Some(sample) = light.sample_li(from, 0.0, first_two(random.unit4()), &wavelengths()) else {
             continue;
         };
         let (LightEnd::Point { p, ng, .. }, LightDensity::Continuous(pdf)) = (sample.end, sample.density) else {
             panic!("{name}: an area light has points and a density");
         };
-        let stated = area.pdf_li(from, p, ng).0;
+        let stated = area.pdf_li(from, p, ng, 0.0).0;
         assert!((stated / pdf.0 - 1.0).abs() < 1e-4, "{name}: {stated} and {}", pdf.0);
         assert!(((p - from).normalize() - sample.wi).length() < 1e-5, "{name}");
         assert_eq!(sample.li.0[0], 2.0, "{name}");
@@ -173,7 +175,7 @@ fn inverse_densities_add_up_to_the_solid_angle() {
             ..Means::default()
         };
         let runs = runs_of(|random| {
-            let sample = light.sample_li(from, first_two(random.unit4()), &wavelengths());
+            let sample = light.sample_li(from, 0.0, first_two(random.unit4()), &wavelengths());
             let density = sample.map(|s| s.density);
             match density {
                 Some(LightDensity::Continuous(pdf)) => 1.0 / f64::from(pdf.0),
@@ -187,13 +189,110 @@ fn inverse_densities_add_up_to_the_solid_angle() {
 }
 
 /// 16 means of 16,384 values.
-fn runs_of(value: impl Fn(&mut Random) -> f64) -> Vec<Vec<f64>> {
+pub(super) fn runs_of(value: impl Fn(&mut Random) -> f64) -> Vec<Vec<f64>> {
     const VALUES: usize = 16_384;
     let run = |seed: usize| {
         let mut random = Random::new(seed as u64);
         vec![(0..VALUES).map(|_| value(&mut random)).sum::<f64>() / VALUES as f64]
     };
     (1..=FEWEST_RUNS).map(run).collect()
+}
+
+fn ellipsoid() -> Sphere {
+    let transform = DAffine3::from_rotation_x(0.4) * DAffine3::from_scale(DVec3::new(1.5, 0.4, 0.8));
+    Sphere::new(0.7, transform).expect("not singular")
+}
+
+/// A picture thrown: its power is the flux through a sphere around it.
+#[test]
+fn the_power_of_a_projection_is_the_flux_of_its_picture() {
+    let rgb: Vec<[f32; 3]> = (0_u8..12).map(|i| [f32::from(i); 3]).collect();
+    for width in [4, 3, 2] {
+        let image = EmissionImage::new(&rgb, width, RgbEmission::new(ColorMode::Rgb)).expect("pixels");
+        let place = Place::facing(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.6, 0.0, 0.8));
+        let light = Light::Projection(ProjectionLight::new(place, image, 1.2));
+        let runs = runs_of(|random| {
+            let u = random.unit4();
+            let outward = warp::sample_uniform_sphere(Vec2::new(u[2], u[3]));
+            let sample = light.sample_li(outward * 4.0, 0.0, first_two(u), &Wavelengths::rgb());
+            sample.map_or(0.0, |s| {
+                f64::from(s.li.0[0] * (-s.wi.dot(outward)).max(0.0)) * 4.0 * PI * 16.0
+            })
+        });
+        let bounds = Bounds3::from_points([Vec3::ZERO]);
+        let report = Means::default().against_exact(&runs, &[f64::from(light.power(&bounds))]);
+        report.assert_agrees(&format!("projection, {width} pixels wide"));
+        report.assert_power("projection", 0.05, 0.05);
+    }
+}
+
+/// The mean of cos / (pdf distance²) is the area, whatever is seen of it; the stated density is that of the samples.
+#[test]
+fn ellipsoids_and_moving_emitters_are_sampled_with_their_density() {
+    let turn = DAffine3::from_rotation_z(1.1) * DAffine3::from_translation(DVec3::new(0.5, 1.0, 0.2));
+    let motion = AnimatedTransform::new(DAffine3::IDENTITY, turn).expect("a motion");
+    let spheres = Sphere::at(DVec3::new(0.2, 0.1, 0.0), 0.6).expect("a sphere");
+    let triangle = MovingEmitter::triangle(
+        vec![CORNERS, CORNERS.map(|v| v * 1.5)],
+        Side::Orientation(true),
+        motion.clone(),
+    );
+    let constant = || constant(2.0);
+    let cases = [
+        ("ellipsoid", AreaLight::sphere(&ellipsoid(), constant(), true)),
+        ("moving triangle", AreaLight::moving(triangle, constant(), true)),
+        (
+            "moving ellipsoid",
+            AreaLight::moving(MovingEmitter::sphere(ellipsoid(), motion.clone()), constant(), true),
+        ),
+        (
+            "moving sphere",
+            AreaLight::moving(MovingEmitter::sphere(spheres, motion), constant(), true),
+        ),
+    ];
+    let mut random = Random::new(23);
+    for (name, light) in cases {
+        let area = light.expect("an area");
+        let light = Light::Area(area.clone());
+        for time in [0.0, 0.4, 1.0] {
+            let from = Vec3::new(3.0, -1.0, -2.0);
+            for _ in 0..500 {
+                let u = Vec2::new(random.unit(), random.unit());
+                let Some(sample) = light.sample_li(from, time, u, &wavelengths()) else {
+                    continue;
+                };
+                let (LightEnd::Point { p, ng, .. }, LightDensity::Continuous(pdf)) = (sample.end, sample.density)
+                else {
+                    panic!("{name}: an area light has points and a density");
+                };
+                let stated = area.pdf_li(from, p, ng, time).0;
+                assert!((stated / pdf.0 - 1.0).abs() < 2e-3, "{name}: {stated} and {}", pdf.0);
+                assert!((ng.length() - 1.0).abs() < 1e-5);
+            }
+        }
+        // A sphere is sampled by the cone that it fills.
+        if name == "moving sphere" {
+            continue;
+        }
+        let runs = runs_of(|random| {
+            let from = Vec3::new(3.0, -1.0, -2.0);
+            let sample = light.sample_li(from, 0.0, first_two(random.unit4()), &wavelengths());
+            sample.map_or(0.0, |s| match (s.end, s.density) {
+                (LightEnd::Point { p, ng, .. }, LightDensity::Continuous(pdf)) => {
+                    let distance_squared = (p - from).length_squared();
+                    f64::from(distance_squared / (pdf.0 * ng.dot(s.wi).abs()))
+                }
+                _ => f64::NAN,
+            })
+        });
+        let means = Means {
+            slack: 1e-3,
+            ..Means::default()
+        };
+        let report = means.against_exact(&runs, &[f64::from(area.area())]);
+        report.assert_agrees(name);
+        report.assert_power(name, 0.02, 0.02);
+    }
 }
 
 /// All that a light emits passes a sphere around the scene: its power is the mean irradiance there times the area (of what comes
@@ -225,17 +324,50 @@ fn power_is_the_flux_through_a_sphere_around_it() {
         ),
         (
             "point",
-            Light::Point(PointLight::new(Vec3::new(0.3, 0.1, 0.2), constant(2.0))),
+            Light::Point(PointLight::new(
+                Place::at_point(Vec3::new(0.3, 0.1, 0.2)),
+                constant(2.0),
+            )),
+            far,
+        ),
+        (
+            "spot",
+            Light::Spot(SpotLight::new(
+                Place::facing(DVec3::new(0.3, 0.1, 0.2), towards.as_dvec3()),
+                constant(2.0),
+                0.4,
+                0.9,
+            )),
+            far,
+        ),
+        (
+            "goniometric",
+            Light::Goniometric(
+                GoniometricLight::new(
+                    Place::at_point(Vec3::X),
+                    constant(2.0),
+                    (0_u8..16).map(f32::from).collect(),
+                )
+                .expect("a square"),
+            ),
+            far,
+        ),
+        (
+            "ellipsoid",
+            Light::Area(AreaLight::sphere(&ellipsoid(), constant(2.0), false).expect("an area")),
             far,
         ),
         (
             "distant",
-            Light::Distant(DistantLight::new(towards, constant(2.0))),
+            Light::Distant(DistantLight::new(
+                Place::facing(DVec3::ZERO, towards.as_dvec3()),
+                constant(2.0),
+            )),
             scene_radius,
         ),
         (
             "environment",
-            Light::Environment(EnvironmentLight::new(constant(2.0))),
+            Light::Environment(EnvironmentLight::Constant(constant(2.0))),
             scene_radius,
         ),
     ];
@@ -244,7 +376,7 @@ fn power_is_the_flux_through_a_sphere_around_it() {
         let runs = runs_of(|random| {
             let u = random.unit4();
             let outward = warp::sample_uniform_sphere(Vec2::new(u[2], u[3]));
-            let Some(sample) = light.sample_li(outward * radius, first_two(u), &wavelengths()) else {
+            let Some(sample) = light.sample_li(outward * radius, 0.0, first_two(u), &wavelengths()) else {
                 return 0.0;
             };
             // Finite lights shine outward through the sphere, infinite ones inward.

@@ -6,6 +6,7 @@ mod common;
 mod bsdfs;
 mod cameras;
 mod energy;
+mod environments;
 mod kinds;
 mod light_samplers;
 mod lights;

@@ -1,58 +1,72 @@
 //! `LightSource` and `AreaLightSource`.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
 use super::spectrum::Use;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind, MotionDesc, SpectrumDesc, SpectrumValue};
+use crate::desc::light_kinds::{
+    AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY, LIGHTS,
+    PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
+};
+use crate::desc::{
+    AreaLightDesc, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc, SpectrumValue,
+};
+use crate::image_io::{self, Image};
+use crate::sampling::SphereMap;
 
-const KNOWN: [&str; 3] = ["point", "distant", "infinite"];
-const LATER: [&str; 3] = ["spot", "goniometric", "projection"];
-
-/// Reads a light; none if its type is not known or not supported.
+/// Reads a light; none if its type is not known or something essential is wrong with it.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: MotionDesc) -> Option<LightDesc> {
     let span = reader.span;
+    let r = &mut reader;
     let (kind, spectrum, photometric) = match kind {
         "point" => {
-            let from = reader.point3("from", DVec3::ZERO);
-            (
-                LightKind::Point { from },
-                emission(&mut reader, "I"),
-                photometric(&mut reader, "power"),
-            )
+            let from = r.point_by(&FROM);
+            (Some(LightKind::Point { from }), r.emission(&INTENSITY), &POWER)
+        }
+        "spot" => (Some(spot(r)), r.emission(&INTENSITY), &POWER),
+        "goniometric" => {
+            let image = r.image(&GONIOMETRIC_IMAGE, true, |[width, height]| {
+                (width != height).then_some("square (equal-area octahedral)")
+            });
+            let kind = image.map(|image| LightKind::Goniometric { image });
+            (kind, r.emission(&INTENSITY), &POWER)
+        }
+        "projection" => {
+            let image = r.image(&PROJECTION_IMAGE, true, |_| None);
+            let fov = r.float_by(&FOV);
+            (image.map(|image| LightKind::Projection { image, fov }), None, &POWER)
         }
         "distant" => {
-            let from = reader.point3("from", DVec3::ZERO);
-            let to = reader.point3("to", DVec3::Z);
-            if from == to {
-                let span = reader.span_of("to");
-                reader
-                    .report()
-                    .error(span, "`from` and `to` of a distant light must differ");
-            }
+            let (from, to) = from_to(r);
             let kind = LightKind::Distant { from, to };
-            (
-                kind,
-                emission(&mut reader, "L"),
-                photometric(&mut reader, "illuminance"),
-            )
+            (Some(kind), r.emission(&RADIANCE), &ILLUMINANCE)
         }
         "infinite" => {
-            reader.unsupported(&["filename", "portal"]);
-            let spectrum = emission(&mut reader, "L");
-            (LightKind::Infinite, spectrum, photometric(&mut reader, "illuminance"))
+            let (kind, spectrum) = infinite(r);
+            (kind, spectrum, &ILLUMINANCE)
         }
         _ => {
-            let classes = (&KNOWN[..], &LATER[..]);
-            unknown_type(reader.report(), "light", kind, span, classes, "it is left out");
+            let span = reader.span;
+            unknown_type(
+                reader.report(),
+                "light",
+                kind,
+                span,
+                (&names("LightSource"), &[]),
+                "it is left out",
+            );
             return None;
         }
     };
-    let scale = reader.not_negative("scale", 1.0) as f32;
+    let photometric = reader.photometric(photometric);
+    let scale = reader.float_by(&SCALE) as f32;
     reader.finish();
     Some(LightDesc {
         span,
-        kind,
+        kind: kind?,
         spectrum,
         scale,
         photometric,
@@ -64,46 +78,178 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: Mo
 pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaLightDesc> {
     let span = reader.span;
     if kind != "diffuse" {
-        let classes = (&["diffuse"][..], &[][..]);
-        unknown_type(reader.report(), "area light", kind, span, classes, "nothing emits");
+        let known = names("AreaLightSource");
+        unknown_type(
+            reader.report(),
+            "area light",
+            kind,
+            span,
+            (&known, &[]),
+            "nothing emits",
+        );
         return None;
     }
-    reader.unsupported(&["filename"]);
+    let l = reader.emission(&RADIANCE);
+    let image = reader.image(&AREA_IMAGE, false, |_| None);
+    reader.one_of(&RADIANCE, &AREA_IMAGE);
     let light = AreaLightDesc {
         span,
-        l: emission(&mut reader, "L"),
-        scale: reader.not_negative("scale", 1.0) as f32,
-        power: photometric(&mut reader, "power"),
-        two_sided: reader.boolean("twosided", false),
+        l,
+        image,
+        scale: reader.float_by(&SCALE) as f32,
+        power: reader.photometric(&POWER),
+        two_sided: reader.bool_by(&TWO_SIDED),
     };
     reader.finish();
     Some(light)
 }
 
-/// The spectrum of a light. Unless RGB, it is normalised by its luminance, which must not be 0.
-fn emission(reader: &mut ParamReader<'_>, name: &'static str) -> Option<SpectrumDesc> {
-    let spectrum = reader.spectrum(name, Use::Emission)?;
-    if let SpectrumValue::Samples(samples) = &spectrum.value
-        && samples.iter().all(|&(_, value)| value == 0.0)
-    {
-        let message = format!(
-            "`{name}` is 0 everywhere: it has no luminance to be scaled to (`\"rgb {name}\" [0 0 0]` is black)"
-        );
-        reader.report().error(spectrum.span, message);
-        return None;
-    }
-    Some(spectrum)
+fn names(directive: &str) -> Vec<&'static str> {
+    let of_directive = LIGHTS.iter().filter(|light| light.directive == directive);
+    of_directive.map(|light| light.name).collect()
 }
 
-/// A power or an illuminance; as in pbrt-v4 it counts only if it is positive.
-fn photometric(reader: &mut ParamReader<'_>, name: &'static str) -> Option<f32> {
-    let value = reader.float(name)?;
-    if value > 0.0 {
-        return Some(value as f32);
+fn from_to(reader: &mut ParamReader<'_>) -> (DVec3, DVec3) {
+    let (from, to) = (reader.point_by(&FROM), reader.point_by(&TO));
+    if from == to {
+        let span = reader.span_of(TO.name);
+        let message = format!("`from` and `to` of {} must differ", reader.entity);
+        reader.report().error(span, message);
     }
-    let span = reader.span_of(name);
-    reader
-        .report()
-        .warning(span, format!("`{name}` has no effect: it is not positive"));
-    None
+    (from, to)
+}
+
+fn spot(reader: &mut ParamReader<'_>) -> LightKind {
+    let (from, to) = from_to(reader);
+    let (angle, delta) = (reader.float_by(&CONE_ANGLE), reader.float_by(&CONE_DELTA));
+    if delta > angle {
+        let range = format!("no more than `{}`, {angle}", CONE_ANGLE.name);
+        reader.out_of_range(CONE_DELTA.name, &delta.to_string(), &range);
+    }
+    LightKind::Spot { from, to, angle, delta }
+}
+
+fn infinite(reader: &mut ParamReader<'_>) -> (Option<LightKind>, Option<SpectrumDesc>) {
+    let spectrum = reader.emission(&RADIANCE);
+    let image = reader.image(&INFINITE_IMAGE, false, |[width, height]| {
+        let known = SphereMap::of_size(width, height).is_some();
+        (!known).then_some("square (equal-area octahedral) or twice as wide as high (latitude and longitude)")
+    });
+    reader.one_of(&RADIANCE, &INFINITE_IMAGE);
+    let portal = reader.points4(&PORTAL);
+    (Some(LightKind::Infinite { image, portal }), spectrum)
+}
+
+impl ParamReader<'_> {
+    /// A point by its table.
+    fn point_by(&mut self, parameter: &'static Parameter) -> DVec3 {
+        match parameter.kind {
+            ParameterKind::Point(default) => self.point3(parameter.name, DVec3::from(default)),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// Four points.
+    fn points4(&mut self, parameter: &'static Parameter) -> Option<[DVec3; 4]> {
+        let v = self.numbers(parameter.name, ParamType::Point3, 12)?;
+        Some(std::array::from_fn(|i| {
+            DVec3::new(v[3 * i], v[3 * i + 1], v[3 * i + 2])
+        }))
+    }
+
+    /// The spectrum of a light. Unless RGB, it is normalised by its luminance, which must not be 0.
+    fn emission(&mut self, parameter: &'static Parameter) -> Option<SpectrumDesc> {
+        let name = parameter.name;
+        let spectrum = self.spectrum(name, Use::Emission)?;
+        if let SpectrumValue::Samples(samples) = &spectrum.value
+            && samples.iter().all(|&(_, value)| value == 0.0)
+        {
+            let message = format!(
+                "`{name}` is 0 everywhere: it has no luminance to be scaled to (`\"rgb {name}\" [0 0 0]` is black)"
+            );
+            self.report().error(spectrum.span, message);
+            return None;
+        }
+        Some(spectrum)
+    }
+
+    /// A power or an illuminance; as in pbrt-v4 it counts only if it is positive.
+    fn photometric(&mut self, parameter: &'static Parameter) -> Option<f32> {
+        let name = parameter.name;
+        let value = self.float(name)?;
+        if value > 0.0 {
+            return Some(value as f32);
+        }
+        let span = self.span_of(name);
+        self.report()
+            .warning(span, format!("`{name}` has no effect: it is not positive"));
+        None
+    }
+
+    /// Complains if two parameters are given that say the same thing.
+    fn one_of(&mut self, first: &Parameter, second: &Parameter) {
+        if self.has(first.name) && self.has(second.name) {
+            let span = self.span_of(second.name);
+            let message = format!("`{}` and `{}` exclude each other", first.name, second.name);
+            self.report().error(span, message);
+        }
+    }
+
+    /// The image in a file, finite and in colour; `refuse` says what its width and height should be if they will not do.
+    fn image(
+        &mut self,
+        parameter: &'static Parameter,
+        required: bool,
+        refuse: impl Fn([usize; 2]) -> Option<&'static str>,
+    ) -> Option<Arc<Image>> {
+        let given = self.has(parameter.name);
+        let Some(param) = self.take(parameter.name, &[ParamType::String]) else {
+            if required && !given {
+                let message = format!("this {} has no `\"string {}\"`", self.entity, parameter.name);
+                let span = self.span;
+                self.report().error(span, message);
+            }
+            return None;
+        };
+        let Values::Strings(names) = &param.values else {
+            return None;
+        };
+        self.check_count(&param, names.len(), 1)?;
+        let span = param.values_span;
+        let path = self.context.resolve(&names[0], span);
+        let read = std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
+        let image = read.and_then(|content| {
+            self.context.count(&content);
+            let image = image_io::read(&path).map_err(|error| error.to_string())?;
+            check_pixels(&image).map(|()| image)
+        });
+        let refused = image.and_then(|image| match refuse([image.width(), image.height()]) {
+            Some(wanted) => Err(format!(
+                "the image of {} must be {wanted}; this one has {} x {} pixels",
+                self.entity,
+                image.width(),
+                image.height()
+            )),
+            None => Ok(image),
+        });
+        refused
+            .map(Arc::new)
+            .map_err(|message| self.report().error(span, message))
+            .ok()
+    }
+}
+
+/// Complains about an image that cannot emit.
+fn check_pixels(image: &Image) -> Result<(), String> {
+    let rgb = image
+        .to_rgb()
+        .ok_or("the image has neither the channels R, G and B nor Y")?;
+    match rgb.iter().position(|pixel| !pixel.iter().all(|c| c.is_finite())) {
+        None => Ok(()),
+        Some(i) => Err(format!(
+            "the image has a value that is not finite, in column {} of row {}",
+            i % image.width(),
+            i / image.width()
+        )),
+    }
 }

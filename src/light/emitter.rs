@@ -1,0 +1,262 @@
+//! Surfaces that emit as such: points sampled on triangles, spheres and ellipsoids, with their densities.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::geometry::{LEAST_ERROR, Sphere, triangle_error};
+use crate::math::{Bounds3, DVec3, Frame, Vec2, Vec3, gamma};
+use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
+
+/// The surface of an area light at one time, world space.
+#[derive(Clone, Debug)]
+pub enum EmitterShape {
+    /// A triangle.
+    Triangle {
+        /// Its corners.
+        vertices: [Vec3; 3],
+        /// Unit geometric normal, on the side that emits.
+        ng: Vec3,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its centre.
+        center: DVec3,
+        /// Its radius.
+        radius: f64,
+        /// Whether the normal, and so the side that emits, is inside.
+        inward: bool,
+    },
+    /// A sphere that its transform has made an ellipsoid.
+    Ellipsoid(Arc<Sphere>),
+}
+
+/// A point of an emitter.
+pub(super) struct SurfaceSample {
+    pub p: Vec3,
+    /// See [`SurfaceInteraction::error`](crate::geometry::SurfaceInteraction::error).
+    pub error: f32,
+    pub ng: Vec3,
+    pub pdf: SolidAnglePdf,
+    /// What texture coordinates are found by.
+    pub at: SamplePlace,
+}
+
+/// Where on its shape a point is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum SamplePlace {
+    /// Barycentric coordinates.
+    Triangle(Vec3),
+    /// Unit direction from the centre of a sphere, in the world.
+    Sphere(DVec3),
+    /// Unit direction from the centre of an ellipsoid, in object space.
+    Ellipsoid(DVec3),
+}
+
+/// A shape with what does not change from point to point.
+#[derive(Clone, Debug)]
+pub(super) struct Emitter {
+    pub shape: EmitterShape,
+    /// Of a point chosen uniformly by area; not known of an ellipsoid, where none is.
+    uniform: AreaPdf,
+    /// Of a point of a triangle: that of its plane, and the rounding of three weighted corners.
+    error: f32,
+}
+
+impl Emitter {
+    /// `None` if the shape has no area.
+    pub fn new(shape: EmitterShape) -> Option<Self> {
+        let area = match &shape {
+            EmitterShape::Ellipsoid(_) => f32::INFINITY,
+            EmitterShape::Triangle { .. } | EmitterShape::Sphere { .. } => shape.area(),
+        };
+        (area > 0.0).then(|| Self {
+            uniform: AreaPdf(1.0 / area),
+            error: shape.error(),
+            shape,
+        })
+    }
+
+    /// Density, by solid angle at `from`, of [`Self::sample`] for the point `p`, where the geometric normal is `ng`.
+    #[inline]
+    pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
+        match &self.shape {
+            EmitterShape::Triangle { .. } => self.uniform_pdf(from, p, ng),
+            EmitterShape::Sphere { center, radius, .. } => match Cone::towards(from, *center, *radius) {
+                Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
+                None => self.uniform_pdf(from, p, ng),
+            },
+            EmitterShape::Ellipsoid(sphere) => {
+                let outward = sphere.object_from_world().transform_point3(p.as_dvec3()).normalize();
+                area_to_solid_angle(ellipsoid_pdf(sphere, outward), from, p, ng)
+            }
+        }
+    }
+
+    /// The density by solid angle of a point chosen uniformly by area.
+    fn uniform_pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
+        area_to_solid_angle(self.uniform, from, p, ng)
+    }
+
+    /// A point of the surface for `u` in [0, 1)².
+    pub fn sample(&self, from: Vec3, u: Vec2) -> SurfaceSample {
+        match &self.shape {
+            EmitterShape::Triangle { vertices, ng } => self.sample_triangle(vertices, *ng, from, u),
+            EmitterShape::Sphere { center, radius, inward } => self.sample_sphere(*center, *radius, *inward, from, u),
+            EmitterShape::Ellipsoid(sphere) => sample_ellipsoid(sphere, from, u),
+        }
+    }
+
+    fn sample_triangle(&self, vertices: &[Vec3; 3], ng: Vec3, from: Vec3, u: Vec2) -> SurfaceSample {
+        let b = warp::sample_uniform_triangle(u);
+        let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
+        SurfaceSample {
+            p,
+            error: self.error,
+            ng,
+            pdf: self.uniform_pdf(from, p, ng),
+            at: SamplePlace::Triangle(b),
+        }
+    }
+
+    /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside or from the
+    /// sphere itself.
+    fn sample_sphere(&self, center: DVec3, radius: f64, inward: bool, from: Vec3, u: Vec2) -> SurfaceSample {
+        let cone = Cone::towards(from, center, radius);
+        let outward = match &cone {
+            Some(cone) => cone.surface_direction(warp::sample_uniform_cone(u, cone.one_minus_cos), radius),
+            None => warp::sample_uniform_sphere(u).as_dvec3(),
+        };
+        let p = (center + outward * radius).as_vec3();
+        let ng = if inward { -outward } else { outward }.as_vec3();
+        let pdf = match &cone {
+            Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
+            None => self.uniform_pdf(from, p, ng),
+        };
+        SurfaceSample {
+            p,
+            error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
+            ng,
+            pdf,
+            at: SamplePlace::Sphere(outward),
+        }
+    }
+}
+
+/// The image of a uniform point of the unit sphere.
+fn sample_ellipsoid(sphere: &Sphere, from: Vec3, u: Vec2) -> SurfaceSample {
+    let outward = warp::sample_uniform_sphere(u).as_dvec3().normalize();
+    let world = sphere.world_from_object().transform_point3(outward * sphere.radius());
+    let normal = (sphere.object_from_world().matrix3.transpose() * outward).normalize();
+    let ng = if sphere.has_flipped_normal() { -normal } else { normal }.as_vec3();
+    let p = world.as_vec3();
+    SurfaceSample {
+        p,
+        error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * (world - sphere.center()).length()) as f32,
+        ng,
+        pdf: area_to_solid_angle(ellipsoid_pdf(sphere, outward), from, p, ng),
+        at: SamplePlace::Ellipsoid(outward),
+    }
+}
+
+/// The density by area of the image of a uniform point of the unit sphere: areas grow by |det M| |M⁻ᵀ n|.
+fn ellipsoid_pdf(sphere: &Sphere, outward: DVec3) -> AreaPdf {
+    let (m, inverse) = (sphere.world_from_object().matrix3, sphere.object_from_world().matrix3);
+    let growth = m.determinant().abs() * (inverse.transpose() * outward).length();
+    AreaPdf((1.0 / (4.0 * PI * sphere.radius().powi(2) * growth)) as f32)
+}
+
+fn area_to_solid_angle(pdf: AreaPdf, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
+    let to_light = p - from;
+    let distance_squared = to_light.length_squared();
+    let cos = ng.dot(to_light).abs() / distance_squared.sqrt();
+    pdf.to_solid_angle(distance_squared, cos)
+}
+
+impl EmitterShape {
+    fn error(&self) -> f32 {
+        match self {
+            Self::Triangle { vertices, ng } => {
+                let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
+                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
+            }
+            Self::Sphere { .. } | Self::Ellipsoid(_) => 0.0,
+        }
+    }
+
+    /// One side. Slow for an ellipsoid.
+    pub fn area(&self) -> f32 {
+        match self {
+            Self::Triangle {
+                vertices: [a, b, c], ..
+            } => 0.5 * (*b - *a).cross(*c - *a).length(),
+            Self::Sphere { radius, .. } => (4.0 * PI * radius * radius) as f32,
+            Self::Ellipsoid(sphere) => ellipsoid_area(sphere),
+        }
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> Bounds3 {
+        match self {
+            Self::Triangle { vertices, .. } => Bounds3::from_points(*vertices),
+            Self::Sphere { center, radius, .. } => {
+                let largest = center.abs().max_element() as f32;
+                Bounds3::from_points([center.as_vec3()]).expand(*radius as f32 * (1.0 + gamma(2)) + largest * gamma(1))
+            }
+            Self::Ellipsoid(sphere) => sphere.bounds(),
+        }
+    }
+}
+
+/// By the midpoint rule over the sphere that it is the image of: there is no closed form.
+fn ellipsoid_area(sphere: &Sphere) -> f32 {
+    const STEPS: usize = 128;
+    let mut sum = 0.0;
+    for i in 0..2 * STEPS * STEPS {
+        let z = 1.0 - 2.0 * ((i / (2 * STEPS)) as f64 + 0.5) / STEPS as f64;
+        let (sin, cos) = (PI * ((i % (2 * STEPS)) as f64 + 0.5) / STEPS as f64).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        sum += 1.0 / f64::from(ellipsoid_pdf(sphere, DVec3::new(r * cos, r * sin, z)).0);
+    }
+    (sum / (2 * STEPS * STEPS) as f64) as f32
+}
+
+/// The cone of directions in which a sphere is seen from a point outside.
+struct Cone {
+    /// Unit direction to the centre.
+    axis: DVec3,
+    /// Distance to the centre.
+    distance: f64,
+    /// 1 - cos of its half angle, without cancellation.
+    one_minus_cos: f32,
+}
+
+impl Cone {
+    /// `None` from inside the sphere, and from so near to it that `from`, rounded to single precision, may stand for a point
+    /// inside: on the sphere itself half of all points seem to be outside.
+    fn towards(from: Vec3, center: DVec3, radius: f64) -> Option<Self> {
+        let to_center = center - from.as_dvec3();
+        let distance = to_center.length();
+        let rounding = f64::from(gamma(1) * (from.x.abs() + from.y.abs() + from.z.abs()));
+        if distance <= radius + rounding {
+            return None;
+        }
+        let sin = radius / distance;
+        let one_minus_cos = sin * sin / (1.0 + (1.0 - sin * sin).sqrt());
+        Some(Self {
+            axis: to_center / distance,
+            distance,
+            one_minus_cos: one_minus_cos as f32,
+        })
+    }
+
+    /// The direction from the sphere's centre to the point where it is first met along `w`, a direction in the cone's local frame.
+    fn surface_direction(&self, w: Vec3, radius: f64) -> DVec3 {
+        let sin2 = f64::from(w.x) * f64::from(w.x) + f64::from(w.y) * f64::from(w.y);
+        let cos = (1.0 - sin2).max(0.0).sqrt();
+        let to_line2 = self.distance * self.distance * sin2;
+        let t = self.distance * cos - (radius * radius - to_line2).max(0.0).sqrt();
+        let frame = Frame::from_normal(self.axis.as_vec3());
+        let across = (frame.s * w.x + frame.t * w.y).as_dvec3();
+        ((across + self.axis * cos) * t - self.axis * self.distance).normalize()
+    }
+}
