@@ -35,7 +35,10 @@ pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
-pub use texture::{ClassedTexture, TextureClass, TextureDesc, TextureId, TextureKind, Textured};
+pub use texture::{
+    ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
+    TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+};
 pub use texture_kinds::{TEXTURES, TextureEntry};
 pub use view::{CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, ViewDesc};
 
@@ -55,6 +58,8 @@ pub struct SceneDesc {
     pub materials: Vec<MaterialDesc>,
     /// What [`TextureId`] counts.
     pub textures: Vec<TextureDesc>,
+    /// What [`ImageId`] counts: every file once for each encoding.
+    pub images: Vec<ImageDesc>,
     /// The shapes that stand in the world themselves, in file order.
     pub shapes: Vec<ShapeDesc>,
     /// Groups of shapes that are seen only through instances; what [`ObjectId`] counts.

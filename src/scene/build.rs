@@ -50,7 +50,7 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
-        let mut textures = TextureCompiler::new(&desc.textures, builder.spectra);
+        let mut textures = TextureCompiler::new(desc, builder.spectra);
         let materials = desc
             .materials
             .iter()

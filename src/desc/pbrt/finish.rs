@@ -8,8 +8,8 @@ use super::builder::Builder;
 use super::files::Context;
 use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
-use super::suggest;
 use super::world::{RawShape, Slot, World, default_material};
+use super::{images, suggest};
 use crate::desc::{
     InstanceDesc, MaterialDesc, MaterialId, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc, ShapeKind, ply,
 };
@@ -40,6 +40,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     } = world;
     let (materials, ids) = resolve_materials(materials.into_slots(), &mut context.report);
     let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
+    let images = images::read(&std::mem::take(&mut context.images), &mut context);
     let meshes = read_meshes(&meshes, &mut context);
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));
@@ -62,6 +63,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
         integrator: options.integrator(),
         materials,
         textures,
+        images,
         shapes,
         objects,
         instances,
