@@ -2,9 +2,9 @@
 
 use std::f32::consts::PI;
 
-use super::{LightDensity, LightEnd, LightSample};
+use super::{LightBounds, LightDensity, LightEnd, LightSample};
 use crate::geometry::{LEAST_ERROR, triangle_error};
-use crate::math::{DVec3, Frame, Vec2, Vec3, gamma};
+use crate::math::{Bounds3, DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
@@ -38,6 +38,8 @@ pub struct AreaLight {
     error: f32,
     radiance: CompiledSpectrum,
     two_sided: bool,
+    /// How much of the surface there is: rays pass it with the probability 1 - alpha.
+    alpha: f32,
 }
 
 /// A point of an emitter.
@@ -58,6 +60,7 @@ impl AreaLight {
             shape,
             radiance,
             two_sided,
+            alpha: 1.0,
         })
     }
 
@@ -68,6 +71,12 @@ impl AreaLight {
             radiance: self.radiance.scaled(factor),
             ..self
         }
+    }
+
+    /// Lets rays pass with the probability 1 - `alpha`. As in pbrt-v4 a light whose alpha is 0 sends its light all the same, but only
+    /// light samples find it.
+    pub fn see_through(&mut self, alpha: f32) {
+        self.alpha = alpha;
     }
 
     /// Its surface area, one side.
@@ -116,6 +125,12 @@ impl AreaLight {
         };
         let wi = (sample.p - from).try_normalize()?;
         let li = self.le(sample.ng, -wi, lambda);
+        // Rays find an invisible light never, and others as often as they do not pass them.
+        let (li, density) = if self.alpha == 0.0 {
+            (li * (1.0 / sample.pdf.0), LightDensity::Delta)
+        } else {
+            (li * self.alpha, LightDensity::Continuous(sample.pdf))
+        };
         (sample.pdf.0 > 0.0 && sample.pdf.0.is_finite() && !li.is_black()).then_some(LightSample {
             li,
             wi,
@@ -124,7 +139,7 @@ impl AreaLight {
                 error: sample.error,
                 ng: sample.ng,
             },
-            density: LightDensity::Continuous(sample.pdf),
+            density,
         })
     }
 
@@ -158,6 +173,28 @@ impl AreaLight {
             error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
             ng,
             pdf,
+        }
+    }
+
+    pub(super) fn bounds(&self) -> LightBounds {
+        let radiance = self.radiance.photometric_luminance();
+        match &self.shape {
+            EmitterShape::Triangle { vertices, ng } => LightBounds {
+                bounds: Bounds3::from_points(*vertices),
+                axis: *ng,
+                cos_normals: 1.0,
+                cos_emission: 0.0,
+                intensity: radiance * self.area,
+                two_sided: self.two_sided,
+            },
+            // Of a sphere no more than half is seen from outside, and all of its area faces a point inside.
+            EmitterShape::Sphere { center, radius, .. } => {
+                let (center, radius) = (center.as_vec3(), *radius as f32);
+                LightBounds::omnidirectional(
+                    Bounds3::from_points([center]).expand(radius),
+                    radiance * PI * radius * radius,
+                )
+            }
         }
     }
 

@@ -13,15 +13,19 @@ use crate::desc::{
     SceneDesc, ShapeDesc,
 };
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
-use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
-use crate::light::{AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, PointLight};
+use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, Shape, TriangleMesh, WorldBuilder};
+use crate::light::{
+    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
+};
 use crate::material::{ConductorIor, Material};
 use crate::math::DVec3;
+use crate::texture::FloatTexture;
 
 /// What is collected while shapes and lights are gone through.
 struct SceneBuilder<'a> {
     desc: &'a SceneDesc,
     spectra: SpectrumCompiler,
+    textures: TextureCompiler<'a>,
     world: WorldBuilder,
     surfaces: Vec<Surface>,
     lights: Vec<Light>,
@@ -35,9 +39,11 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for what the description asks and cannot be had, [`Error::Backend`] if the backend fails.
     pub fn build(desc: &SceneDesc, options: &SceneOptions) -> Result<Self> {
+        let spectra = SpectrumCompiler { mode: options.color };
         let mut builder = SceneBuilder {
             desc,
-            spectra: SpectrumCompiler { mode: options.color },
+            spectra,
+            textures: TextureCompiler::new(desc, spectra),
             world: WorldBuilder::default(),
             surfaces: Vec::new(),
             lights: Vec::new(),
@@ -50,23 +56,21 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
-        let mut textures = TextureCompiler::new(desc, builder.spectra);
         let materials = desc
             .materials
             .iter()
-            .map(|desc| material(&mut textures, desc))
+            .map(|desc| material(&mut builder.textures, desc))
             .collect();
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
-        let light_sampler = match desc.integrator {
-            IntegratorDesc::Path {
-                light_sampler: LightSamplerKind::Uniform,
-                ..
-            } => LightSampler::uniform(&builder.lights),
-            IntegratorDesc::Path { .. } => LightSampler::power(&builder.lights, &bounds),
+        let IntegratorDesc::Path { light_sampler, .. } = desc.integrator;
+        let light_sampler = match light_sampler {
+            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
+            LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
+            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),
         };
         Ok(Self {
             world,
@@ -74,6 +78,7 @@ impl Scene {
             color: options.color,
             bounds,
             materials,
+            has_cutouts: builder.surfaces.iter().any(|surface| surface.alpha.is_some()),
             surfaces: builder.surfaces,
             lights: builder.lights,
             environments: builder.environments,
@@ -128,7 +133,7 @@ impl SceneBuilder<'_> {
 
     /// Adds a shape's geometry and its lights; one that moves gets a group of its own and the instance that moves it.
     fn add_shape(&mut self, shape: &ShapeDesc) -> Option<(GeometryId, Option<Instance>)> {
-        let placed = match place(shape) {
+        let mut placed = match place(shape) {
             Ok(placed) => placed,
             Err(message) => {
                 self.problem(shape.span, message);
@@ -139,10 +144,22 @@ impl SceneBuilder<'_> {
             None => Vec::new(),
             Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.is_some()),
         };
+        let alpha = self.textures.float(&shape.alpha);
+        let alpha = match alpha {
+            FloatTexture::Constant(alpha) if alpha >= 1.0 => None,
+            alpha => Some(alpha),
+        };
+        if alpha.is_some() {
+            placed.geometry.opacity = Opacity::Filtered;
+        }
+        if let (Some(alpha), true) = (&alpha, shape.area_light.is_some()) {
+            self.see_through(shape.span, alpha, &lights);
+        }
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
             material: shape.material.0,
             lights,
+            alpha,
         });
         let instance = placed.motion.map(|world_from_object| Instance {
             group: self.world.add_group(Group {
@@ -153,6 +170,19 @@ impl SceneBuilder<'_> {
             mask: u32::MAX,
         });
         Some((id, instance))
+    }
+
+    /// Makes lights send what their shape's alpha leaves of it.
+    fn see_through(&mut self, span: Span, alpha: &FloatTexture, lights: &[Option<LightId>]) {
+        let FloatTexture::Constant(alpha) = *alpha else {
+            let message = "an area light on a shape whose `alpha` is a texture is not supported yet";
+            return self.problem(span, message);
+        };
+        for light in lights.iter().flatten() {
+            if let Light::Area(light) = &mut self.lights[light.index()] {
+                light.see_through(alpha);
+            }
+        }
     }
 
     /// One light for each primitive that has an area.
@@ -210,15 +240,21 @@ impl SceneBuilder<'_> {
         let light = match desc.kind {
             LightKind::Point { from } => {
                 let position = world_from_light.transform_point3(from).as_vec3();
-                Light::Point(PointLight::new(position, spectrum.scaled(scale(4.0 * pi))))
+                Light::Point(PointLight::new(
+                    Place::at_point(position),
+                    spectrum.scaled(scale(4.0 * pi)),
+                ))
             }
             LightKind::Distant { from, to } => {
-                let towards = world_from_light.transform_vector3(from - to).normalize().as_vec3();
-                Light::Distant(DistantLight::new(towards, spectrum.scaled(scale(1.0))))
+                let towards = world_from_light.transform_vector3(from - to).normalize();
+                Light::Distant(DistantLight::new(
+                    Place::facing(DVec3::ZERO, towards),
+                    spectrum.scaled(scale(1.0)),
+                ))
             }
             LightKind::Infinite => {
                 self.environments.push(LightId(self.lights.len() as u32));
-                Light::Environment(EnvironmentLight::new(spectrum.scaled(scale(pi))))
+                Light::Environment(EnvironmentLight::Constant(spectrum.scaled(scale(pi))))
             }
         };
         self.lights.push(light);

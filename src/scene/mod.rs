@@ -2,6 +2,7 @@
 //! outlives renders and serves many [`View`]s.
 
 mod build;
+mod cutouts;
 mod shapes;
 mod spectra;
 mod textures;
@@ -15,6 +16,7 @@ use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::Bounds3;
 use crate::spectrum::ColorMode;
+use crate::texture::FloatTexture;
 
 pub use view::{View, ViewOverrides};
 
@@ -38,6 +40,8 @@ pub struct Scene {
     materials: Vec<Material>,
     /// By geometry.
     surfaces: Vec<Surface>,
+    /// Whether any of them has an alpha.
+    has_cutouts: bool,
     lights: Vec<Light>,
     /// Those that a ray meets when it leaves the scene.
     environments: Vec<LightId>,
@@ -53,6 +57,8 @@ struct Surface {
     material: u32,
     /// By primitive; empty if none emits.
     lights: Vec<Option<LightId>>,
+    /// How much of it there is, if rays pass some of it.
+    alpha: Option<FloatTexture>,
 }
 
 impl Scene {
@@ -117,7 +123,7 @@ impl Scene {
     pub fn environments(&self) -> impl Iterator<Item = (LightId, &EnvironmentLight)> {
         self.environments.iter().filter_map(|&id| match self.light(id) {
             Light::Environment(light) => Some((id, light)),
-            Light::Area(_) | Light::Point(_) | Light::Distant(_) => None,
+            _ => None,
         })
     }
 

@@ -1,8 +1,7 @@
-//! Spectra of colours that are found while rendering: the texels of images.
+//! Spectra of colours that are found while rendering: the texels of images. (For emission there is [`RgbEmission`](super::RgbEmission).)
 
-use super::cie::y_integral;
 use super::table::reflectance;
-use super::{ColorMode, SampledSpectrum, Wavelengths, named};
+use super::{ColorMode, SampledSpectrum, Wavelengths};
 
 /// Turns linear sRGB into what a path carries. In rgb mode that is the colour itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,9 +17,6 @@ pub enum RgbKind {
     Albedo,
     /// A quantity that is not negative.
     Unbounded,
-    /// An emission that is not negative: as unbounded, times D65, over the integral of ȳ times that, so that the film sees the colour
-    /// itself.
-    Illuminant,
 }
 
 impl RgbSampler {
@@ -37,7 +33,7 @@ impl RgbSampler {
     pub fn sample(&self, rgb: [f32; 3], lambda: &Wavelengths) -> SampledSpectrum {
         let rgb = match self.kind {
             RgbKind::Albedo => rgb.map(|c| c.clamp(0.0, 1.0)),
-            RgbKind::Unbounded | RgbKind::Illuminant => rgb.map(|c| c.max(0.0)),
+            RgbKind::Unbounded => rgb.map(|c| c.max(0.0)),
         };
         if self.mode == ColorMode::Rgb {
             return SampledSpectrum([rgb[0], rgb[1], rgb[2], 0.0]);
@@ -45,7 +41,6 @@ impl RgbSampler {
         match self.kind {
             RgbKind::Albedo => reflectance(rgb, lambda),
             RgbKind::Unbounded => unbounded(rgb, lambda),
-            RgbKind::Illuminant => unbounded(rgb, lambda) * named::d65().sample(lambda) * (1.0 / y_integral()),
         }
     }
 }

@@ -62,7 +62,7 @@ impl Table {
         let z = above.clamp(1, SIZE - 1) - 1;
         let dz = (brightest - self.nodes[z]) / (self.nodes[z + 1] - self.nodes[z]);
         let corner = ((largest * SIZE + z) * SIZE + y) * SIZE + x;
-        SigmoidPolynomial(std::array::from_fn(|c| {
+        SigmoidPolynomial::from_coefficients(std::array::from_fn(|c| {
             let at = |dz: usize, dy: usize, dx: usize| self.coefficients[corner + (dz * SIZE + dy) * SIZE + dx][c];
             let lerp = |t: f32, a: f32, b: f32| a + (b - a) * t;
             let row = |dz, dy| lerp(dx, at(dz, dy, 0), at(dz, dy, 1));

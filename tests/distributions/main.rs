@@ -5,6 +5,7 @@ mod common;
 
 mod bsdfs;
 mod cameras;
+mod light_samplers;
 mod lights;
 
 use glam::Vec2;

@@ -167,6 +167,7 @@ fn resolve_shape(
         world_from_object: shape.world_from_object,
         reverse_orientation: shape.reverse_orientation,
         material,
+        alpha: shape.alpha,
         area_light: shape.area_light.map(|light| (*light).clone()),
     })
 }

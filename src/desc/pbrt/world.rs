@@ -31,6 +31,7 @@ pub(super) struct RawShape {
     pub world_from_object: MotionDesc,
     pub reverse_orientation: bool,
     pub material: usize,
+    pub alpha: Textured<f32>,
     pub area_light: Option<Arc<AreaLightDesc>>,
 }
 
