@@ -133,6 +133,12 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Diffuse { .. } => "diffuse",
         Material::Conductor { .. } => "conductor",
         Material::Dielectric { .. } => "dielectric",
+        Material::DiffuseTransmission { .. } => "diffusetransmission",
+        Material::ThinDielectric { .. } => "thindielectric",
+        Material::CoatedDiffuse { .. } => "coateddiffuse",
+        Material::CoatedConductor { .. } => "coatedconductor",
+        Material::Mix(_) => "mix",
+        Material::Principled(_) => "principled",
     }
 }
 

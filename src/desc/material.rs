@@ -1,6 +1,6 @@
 //! Materials and the spectra that they and the lights are given.
 
-use super::Textured;
+use super::{MaterialId, Textured};
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -14,13 +14,25 @@ pub struct MaterialDesc {
     pub span: Span,
 }
 
-/// The kinds of materials, with pbrt-v4's parameters.
+/// The kinds of materials, with pbrt-v4's parameters and defaults. Numbers that are not textures are within the ranges of
+/// [`MATERIALS`](super::MATERIALS).
 #[derive(Clone, Debug)]
 pub enum MaterialKind {
-    /// Lambertian reflection.
+    /// Diffuse reflection.
     Diffuse {
-        /// Albedo; default 0.5.
+        /// Albedo.
         reflectance: Textured<SpectrumDesc>,
+        /// Of the energy-preserving model of Oren and Nayar; 0 is Lambertian.
+        roughness: Textured<f32>,
+    },
+    /// Lambertian reflection and transmission.
+    DiffuseTransmission {
+        /// What is reflected.
+        reflectance: Textured<SpectrumDesc>,
+        /// What is transmitted.
+        transmittance: Textured<SpectrumDesc>,
+        /// A factor of both.
+        scale: f32,
     },
     /// A metal.
     Conductor {
@@ -28,14 +40,94 @@ pub enum MaterialKind {
         interface: ConductorDesc,
         /// How rough it is.
         roughness: RoughnessDesc,
+        /// Whether light goes on from facet to facet.
+        multiple_scattering: bool,
     },
     /// A boundary between two transparent media.
     Dielectric {
-        /// Index of refraction of the inside over that of the outside; default 1.5.
+        /// Index of refraction of the inside over that of the outside.
         eta: SpectrumDesc,
         /// How rough it is.
         roughness: RoughnessDesc,
+        /// Whether light goes on from facet to facet.
+        multiple_scattering: bool,
     },
+    /// A thin sheet of a transparent medium.
+    ThinDielectric {
+        /// Its index of refraction over that of both sides.
+        eta: SpectrumDesc,
+    },
+    /// A diffuse surface under a dielectric coat.
+    CoatedDiffuse {
+        /// Albedo of the surface.
+        reflectance: Textured<SpectrumDesc>,
+        /// The coat.
+        coat: CoatDesc,
+    },
+    /// A metal under a dielectric coat.
+    CoatedConductor {
+        /// What it reflects; indices are relative to vacuum.
+        interface: ConductorDesc,
+        /// How rough the metal is.
+        roughness: RoughnessDesc,
+        /// The coat.
+        coat: CoatDesc,
+    },
+    /// Of two materials, one here and one there.
+    Mix {
+        /// The two. A mix does not contain itself.
+        materials: [MaterialId; 2],
+        /// How much there is of the second.
+        amount: Textured<f32>,
+    },
+    /// A surface by the parameters of artists.
+    Principled(PrincipledDesc),
+}
+
+/// A coat and what lies between it and the surface under it.
+#[derive(Clone, Debug)]
+pub struct CoatDesc {
+    /// Index of refraction over that of the outside.
+    pub eta: SpectrumDesc,
+    /// How rough it is.
+    pub roughness: RoughnessDesc,
+    /// Mean free paths to the surface.
+    pub thickness: Textured<f32>,
+    /// The share of extinction on the way that is scattering.
+    pub albedo: Textured<SpectrumDesc>,
+    /// Asymmetry of that scattering.
+    pub g: Textured<f32>,
+    /// Most events of a walk between the layers.
+    pub max_depth: u32,
+    /// Walks that a value is the mean of.
+    pub samples: u32,
+}
+
+/// The parameters of Mitsuba's `principled`, all in [0, 1] but for `eta`.
+#[derive(Clone, Debug)]
+pub struct PrincipledDesc {
+    /// Albedo of what is diffuse, reflectance of what is metal, tint of what is transmitted.
+    pub base_color: Textured<SpectrumDesc>,
+    /// The square root of the microfacets' slope.
+    pub roughness: Textured<f32>,
+    /// How much slopes along and across the tangent differ.
+    pub anisotropic: Textured<f32>,
+    /// From dielectric to metal.
+    pub metallic: Textured<f32>,
+    /// From opaque to transparent.
+    pub spec_trans: Textured<f32>,
+    /// Index of refraction.
+    pub eta: f32,
+    /// How much specular reflection takes on the hue of the base.
+    pub spec_tint: Textured<f32>,
+    /// Retroreflection of cloth at grazing angles.
+    pub sheen: Textured<f32>,
+    /// How much that takes on the hue of the base.
+    pub sheen_tint: Textured<f32>,
+    /// A coat of lacquer.
+    pub clearcoat: Textured<f32>,
+    /// How smooth it is.
+    pub clearcoat_gloss: Textured<f32>,
 }
 
 /// How a conductor's Fresnel reflectance is given.
@@ -52,7 +144,17 @@ pub enum ConductorDesc {
     Reflectance(Textured<SpectrumDesc>),
 }
 
-/// The roughness of a GGX microfacet surface, along the two tangent directions.
+/// How the slopes of microfacets are distributed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum DistributionDesc {
+    /// With the long tails of GGX.
+    #[default]
+    Ggx,
+    /// Gaussian.
+    Beckmann,
+}
+
+/// The roughness of a microfacet surface, along the two tangent directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoughnessDesc {
     /// Along dp/du; not negative. 0 for both is a smooth surface.
@@ -62,6 +164,8 @@ pub struct RoughnessDesc {
     /// Whether the values are pbrt's perceptual roughness, of which alpha is the square root (the default); if not, they are
     /// alpha itself.
     pub remap: bool,
+    /// How slopes are distributed.
+    pub distribution: DistributionDesc,
 }
 
 /// A spectrum as it was typed. What it means (albedo, emission, unbounded) depends on where it is used.

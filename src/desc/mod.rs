@@ -16,6 +16,7 @@
 mod bytes;
 mod light;
 mod material;
+mod material_kinds;
 mod parameter;
 pub mod pbrt;
 pub mod ply;
@@ -32,7 +33,11 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
 pub use light::{AreaLightDesc, LightDesc, LightKind};
-pub use material::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue};
+pub use material::{
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, RoughnessDesc, SpectrumDesc,
+    SpectrumValue,
+};
+pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{

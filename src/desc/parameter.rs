@@ -62,6 +62,35 @@ pub enum ParameterKind {
         /// If none is given.
         default: f64,
     },
+    /// As [`ParameterKind::FloatTextured`], where a plain number is limited.
+    FloatTexturedIn {
+        /// If none is given; if that is none, the value of a more general parameter.
+        default: Option<f64>,
+        /// What is allowed.
+        range: FloatRange,
+    },
+    /// `rgb`, `spectrum` or the name of a spectrum `texture`, in [0, 1].
+    Reflectance {
+        /// If none is given, at all wavelengths.
+        default: Option<f64>,
+    },
+    /// `spectrum`, `rgb` or the name of a spectrum `texture`: the real part of a metal's index of refraction.
+    MetalIndex {
+        /// The name of the spectrum if none is given.
+        default: &'static str,
+    },
+    /// As [`ParameterKind::MetalIndex`], of the imaginary part.
+    MetalAbsorption {
+        /// The name of the spectrum if none is given.
+        default: &'static str,
+    },
+    /// `float` or `spectrum`: the index of refraction of a dielectric.
+    GlassIndex {
+        /// If none is given, at all wavelengths.
+        default: f64,
+    },
+    /// `string`: the names of two named materials; there is no default.
+    TwoMaterials,
 }
 
 /// Which numbers are allowed.
@@ -77,6 +106,8 @@ pub enum FloatRange {
     AtLeastOne,
     /// From 0 to 1.
     Unit,
+    /// Between -1 and 1, both excluded.
+    Asymmetry,
 }
 
 impl FloatRange {
@@ -88,6 +119,7 @@ impl FloatRange {
             Self::Positive => value > 0.0,
             Self::AtLeastOne => value >= 1.0,
             Self::Unit => (0.0..=1.0).contains(&value),
+            Self::Asymmetry => value.abs() < 1.0,
         }
     }
 
@@ -99,6 +131,7 @@ impl FloatRange {
             Self::Positive => "positive",
             Self::AtLeastOne => "1 or more",
             Self::Unit => "between 0 and 1",
+            Self::Asymmetry => "more than -1 and less than 1",
         }
     }
 }
@@ -111,10 +144,12 @@ impl ParameterKind {
             Self::Integer { .. } => "integer",
             Self::Float { .. } => "float",
             Self::Vector(_) => "vector3",
-            Self::Choice { .. } | Self::Text { .. } | Self::File => "string",
+            Self::Choice { .. } | Self::Text { .. } | Self::File | Self::TwoMaterials => "string",
             Self::Value { .. } => "float | spectrum",
             Self::Textured { .. } => "float | spectrum | texture",
-            Self::FloatTextured { .. } => "float | texture",
+            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } => "float | texture",
+            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } => "spectrum | texture",
+            Self::GlassIndex { .. } => "float | spectrum",
         }
     }
 
@@ -123,7 +158,11 @@ impl ParameterKind {
         match self {
             Self::Bool(_) => "true, false".to_owned(),
             Self::Integer { range, .. } => format!("{} to {}", range.0, range.1),
-            Self::Float { range, .. } => range.text().to_owned(),
+            Self::Float { range, .. } | Self::FloatTexturedIn { range, .. } => range.text().to_owned(),
+            Self::Reflectance { .. } => FloatRange::Unit.text().to_owned(),
+            Self::MetalIndex { .. } | Self::GlassIndex { .. } => FloatRange::Positive.text().to_owned(),
+            Self::MetalAbsorption { .. } => FloatRange::NotNegative.text().to_owned(),
+            Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Text { .. } => "see there".to_owned(),
             Self::File => "a file".to_owned(),
@@ -141,10 +180,15 @@ impl ParameterKind {
             Self::Float { default, .. }
             | Self::Value { default }
             | Self::Textured { default }
-            | Self::FloatTextured { default } => default.to_string(),
+            | Self::FloatTextured { default }
+            | Self::GlassIndex { default } => default.to_string(),
+            Self::FloatTexturedIn { default, .. } | Self::Reflectance { default } => {
+                default.map_or(String::new(), |default| default.to_string())
+            }
+            Self::MetalIndex { default } | Self::MetalAbsorption { default } => (*default).to_owned(),
             Self::Vector([x, y, z]) => format!("[ {x} {y} {z} ]"),
             Self::Choice { default, .. } | Self::Text { default } => (*default).to_owned(),
-            Self::File => String::new(),
+            Self::File | Self::TwoMaterials => String::new(),
         }
     }
 }

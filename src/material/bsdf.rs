@@ -1,6 +1,6 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
-use super::{Conductor, Dielectric, Diffuse};
+use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, Principled, ThinDielectric};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
@@ -27,7 +27,8 @@ pub enum Density {
 /// A direction sampled in proportion to a BSDF.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
-    /// `f(wo, wi)`, in sr⁻¹, without the cosine; for a delta lobe its coefficient: the fraction of radiance that it carries.
+    /// `f(wo, wi)`, in sr⁻¹, without the cosine; for a delta lobe its coefficient: the fraction of radiance that it carries. For a
+    /// lobe whose value is an estimate ([`Bsdf::is_estimate`]), what makes the [weight](BsdfSample::weight) right in the mean.
     pub value: SampledSpectrum,
     /// The direction, world space.
     pub wi: Vec3,
@@ -96,24 +97,54 @@ impl LocalSample {
     }
 }
 
+impl LocalSample {
+    /// As [`BsdfSample::weight`].
+    #[inline]
+    pub(super) fn weight(&self) -> SampledSpectrum {
+        match self.density {
+            Density::Continuous(pdf) => self.value * (self.wi.z.abs() / pdf.0),
+            Density::Delta(probability) => self.value * (1.0 / probability),
+        }
+    }
+
+    /// One whose throughput is `weight`, where the value is only known as an estimate: what times cos / pdf is the weight. The
+    /// density has to be that which the lobe evaluates to for the same directions. `None` where it is 0.
+    #[inline]
+    pub(super) fn weighted(weight: SampledSpectrum, pdf: f32, wi: Vec3, eta: f32) -> Option<Self> {
+        let f = weight * (pdf / wi.z.abs());
+        (pdf > 0.0 && wi.z != 0.0).then(|| Self::continuous(LocalValue { f, pdf }, wi, eta))
+    }
+}
+
 /// The lobes there are.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Lobe {
+#[expect(missing_docs, reason = "each is its type")]
+pub enum Lobe<'a> {
     Diffuse(Diffuse),
+    OrenNayar(OrenNayar),
+    DiffuseTransmission(DiffuseTransmission),
     Conductor(Conductor),
     Dielectric(Dielectric),
+    ThinDielectric(ThinDielectric),
+    Layered(Layered),
+    Principled(Principled<'a>),
 }
 
-/// The scattering function at a point of a surface for the wavelengths of a path. `f` and `pdf` are functions of their arguments
-/// alone.
+/// The scattering function at a point of a surface for the wavelengths of a path.
+///
+/// `f` and `pdf` are functions of their arguments alone. Most lobes have closed forms. Of others `f` is an estimate by a random
+/// walk seeded by the directions: it is right in the mean over directions close together, and its `pdf` is one to weight with,
+/// not exactly that of the samples, though never 0 where they fall.
 #[derive(Clone, Copy, Debug)]
-pub struct Bsdf {
+pub struct Bsdf<'a> {
     frame: Frame,
-    lobe: Lobe,
+    lobe: Lobe<'a>,
 }
 
-impl Bsdf {
-    pub(super) fn new(frame: Frame, lobe: Lobe) -> Self {
+impl<'a> Bsdf<'a> {
+    /// A lobe whose local z is the normal of `frame` and whose local x is its tangent.
+    #[inline]
+    pub fn new(frame: Frame, lobe: Lobe<'a>) -> Self {
         Self { frame, lobe }
     }
 
@@ -121,9 +152,26 @@ impl Bsdf {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) => false,
+            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Principled(_) => false,
+            Lobe::ThinDielectric(_) => true,
+            Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
             Lobe::Dielectric(lobe) => lobe.is_delta(),
+        }
+    }
+
+    /// Whether `f` is an estimate that only its mean over neighbouring directions makes right, and `pdf` only a likeness of the
+    /// samples' density.
+    pub fn is_estimate(&self) -> bool {
+        match &self.lobe {
+            Lobe::Conductor(lobe) => lobe.is_estimate(),
+            Lobe::Dielectric(lobe) => lobe.is_estimate(),
+            Lobe::Layered(lobe) => !lobe.is_delta(),
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::ThinDielectric(_)
+            | Lobe::Principled(_) => false,
         }
     }
 
@@ -143,6 +191,11 @@ impl Bsdf {
         }
         let value = match &self.lobe {
             Lobe::Diffuse(lobe) => lobe.eval(wo, wi),
+            Lobe::OrenNayar(lobe) => lobe.eval(wo, wi),
+            Lobe::DiffuseTransmission(lobe) => lobe.eval(wo, wi),
+            Lobe::ThinDielectric(_) => None,
+            Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
+            Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
             Lobe::Conductor(lobe) => lobe.eval(wo, wi),
             Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }?;
@@ -174,6 +227,11 @@ impl Bsdf {
         }
         let local = match &self.lobe {
             Lobe::Diffuse(lobe) => lobe.sample_f(wo, u),
+            Lobe::OrenNayar(lobe) => lobe.sample_f(wo, u),
+            Lobe::DiffuseTransmission(lobe) => lobe.sample_f(wo, u_lobe, u),
+            Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
+            Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
             Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }?;

@@ -1,6 +1,9 @@
-//! Metals: a smooth mirror, or GGX microfacets that reflect.
+//! Metals: a smooth mirror, or microfacets that reflect, once or any number of times.
 
-use super::{Density, Ggx, LocalSample, LocalValue, fresnel_complex};
+use std::f32::consts::FRAC_1_PI;
+
+use super::multiscatter::{RoughSurface, Substance, multiple_share};
+use super::{Density, LocalSample, LocalValue, Microfacets, fresnel_complex};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::SampledSpectrum;
 
@@ -9,13 +12,25 @@ use crate::spectrum::SampledSpectrum;
 pub struct Conductor {
     eta: SampledSpectrum,
     k: SampledSpectrum,
-    roughness: Option<Ggx>,
+    roughness: Option<Microfacets>,
+    multiple: bool,
 }
 
 impl Conductor {
     /// Of index `eta` + i `k`; smooth without `roughness`.
-    pub fn new(eta: SampledSpectrum, k: SampledSpectrum, roughness: Option<Ggx>) -> Self {
-        Self { eta, k, roughness }
+    pub fn new(eta: SampledSpectrum, k: SampledSpectrum, roughness: Option<Microfacets>) -> Self {
+        Self {
+            eta,
+            k,
+            roughness,
+            multiple: false,
+        }
+    }
+
+    /// With light that meets several facets: what is then not absorbed is not lost. Values are estimates.
+    #[must_use]
+    pub fn with_multiple_scattering(self, multiple: bool) -> Self {
+        Self { multiple, ..self }
     }
 
     /// Whether it is a mirror.
@@ -23,7 +38,13 @@ impl Conductor {
         self.roughness.is_none()
     }
 
-    fn fresnel(&self, cos: f32) -> SampledSpectrum {
+    /// Whether its values are estimates.
+    pub fn is_estimate(&self) -> bool {
+        self.multiple && self.roughness.is_some()
+    }
+
+    /// The reflectance of a facet.
+    pub(super) fn fresnel(&self, cos: f32) -> SampledSpectrum {
         SampledSpectrum(std::array::from_fn(|i| {
             fresnel_complex(cos, self.eta.0[i], self.k.0[i])
         }))
@@ -31,21 +52,43 @@ impl Conductor {
 
     /// See [`Bsdf::eval`](super::Bsdf::eval): F D G / (4 cos cos) (Torrance and Sparrow 1967).
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
-        let ggx = self.roughness.as_ref()?;
+        let facets = self.roughness.as_ref()?;
         let m = half_vector(wo, wi)?;
-        Some(self.eval_facet(ggx, wo, wi, m))
+        let single = self.eval_facet(facets, wo, wi, m);
+        Some(if self.multiple {
+            LocalValue {
+                f: single.f + self.surface(facets).estimate(wo, wi) * (1.0 / wi.z.abs()),
+                pdf: density_of_all(facets, single.pdf, wi),
+            }
+        } else {
+            single
+        })
     }
 
-    fn eval_facet(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3) -> LocalValue {
+    fn surface<'a>(&'a self, facets: &'a Microfacets) -> RoughSurface<'a> {
+        RoughSurface {
+            facets,
+            substance: Substance::Metal(self),
+        }
+    }
+
+    fn sample_walk(&self, facets: &Microfacets, wo: Vec3, u: Vec2) -> Option<LocalSample> {
+        let (wi, weight) = self.surface(facets).sample(wo, 0.0, u)?;
+        let m = half_vector(wo, wi)?;
+        let pdf = density_of_all(facets, reflection_pdf(facets, wo, m), wi);
+        LocalSample::weighted(weight, pdf, wi, 1.0)
+    }
+
+    fn eval_facet(&self, facets: &Microfacets, wo: Vec3, wi: Vec3, m: Vec3) -> LocalValue {
         LocalValue {
-            f: self.fresnel(wo.dot(m).abs()) * (ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
-            pdf: reflection_pdf(ggx, wo, m),
+            f: self.fresnel(wo.dot(m).abs()) * (facets.d(m) * facets.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
+            pdf: reflection_pdf(facets, wo, m),
         }
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
     pub fn sample_f(&self, wo: Vec3, u: Vec2) -> Option<LocalSample> {
-        let Some(ggx) = &self.roughness else {
+        let Some(facets) = &self.roughness else {
             return Some(LocalSample {
                 value: self.fresnel(wo.z.abs()),
                 wi: Vec3::new(-wo.x, -wo.y, wo.z),
@@ -53,9 +96,18 @@ impl Conductor {
                 eta: 1.0,
             });
         };
-        let (m, wi) = sample_reflection(ggx, wo, u)?;
-        Some(LocalSample::continuous(self.eval_facet(ggx, wo, wi, m), wi, 1.0))
+        if self.multiple {
+            return self.sample_walk(facets, wo, u);
+        }
+        let (m, wi) = sample_reflection(facets, wo, u)?;
+        Some(LocalSample::continuous(self.eval_facet(facets, wo, wi, m), wi, 1.0))
     }
+}
+
+/// A density for all orders of reflection, from that of the first.
+fn density_of_all(facets: &Microfacets, single: f32, wi: Vec3) -> f32 {
+    let share = multiple_share(facets);
+    (1.0 - share) * single + share * wi.z.abs() * FRAC_1_PI
 }
 
 /// The microfacet normal, with z >= 0, that reflects `wo` to `wi`; `None` if they are on different sides.
@@ -70,14 +122,14 @@ pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
 
 /// Density of the direction reflected by a visible normal `m`: the reflection doubles angles.
 #[inline]
-pub(super) fn reflection_pdf(ggx: &Ggx, wo: Vec3, m: Vec3) -> f32 {
-    ggx.visible_normal_pdf(wo, m) / (4.0 * wo.dot(m).abs())
+pub(super) fn reflection_pdf(facets: &Microfacets, wo: Vec3, m: Vec3) -> f32 {
+    facets.visible_normal_pdf(wo, m) / (4.0 * wo.dot(m).abs())
 }
 
 /// A visible normal and the direction that it reflects `wo` to; `None` if that goes into the surface.
 #[inline]
-pub(super) fn sample_reflection(ggx: &Ggx, wo: Vec3, u: Vec2) -> Option<(Vec3, Vec3)> {
-    let m = ggx.sample_visible_normal(wo, u);
+pub(super) fn sample_reflection(facets: &Microfacets, wo: Vec3, u: Vec2) -> Option<(Vec3, Vec3)> {
+    let m = facets.sample_visible_normal(wo, u);
     let wi = reflect(wo, m);
     (wo.z * wi.z > 0.0).then_some((m, wi))
 }

@@ -1,61 +1,136 @@
-//! The anisotropic GGX distribution of microfacet normals with Smith's masking (Walter et al. 2007; Heitz 2014).
+//! Distributions of microfacet normals, anisotropic GGX and Beckmann, with Smith's masking (Walter et al. 2007; Heitz 2014).
 
 use std::f32::consts::PI;
 
+use super::beckmann;
 use crate::math::{Vec2, Vec3};
 
-/// A GGX distribution; all directions are local.
+/// The shapes of distributions there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Distribution {
+    /// Ellipsoids, with long tails (Trowbridge and Reitz 1975); pbrt's.
+    #[default]
+    Ggx,
+    /// Gaussian slopes (Beckmann and Spizzichino 1963).
+    Beckmann,
+}
+
+/// Microfacets of a given distribution and roughness; all directions are local.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ggx {
+pub struct Microfacets {
+    distribution: Distribution,
     alpha_x: f32,
     alpha_y: f32,
 }
 
-impl Ggx {
+impl Microfacets {
     /// Below this both ways a surface counts as smooth, as in pbrt-v4.
     const SMOOTH: f32 = 1e-3;
     /// A surface rough in one direction only keeps at least this in the other.
     const LEAST_ALPHA: f32 = 1e-4;
 
     /// With slopes `alpha_x` and `alpha_y` (not negative) along the two tangents; `None` if it is effectively smooth.
-    pub fn new(alpha_x: f32, alpha_y: f32) -> Option<Self> {
+    #[inline]
+    pub fn new(distribution: Distribution, alpha_x: f32, alpha_y: f32) -> Option<Self> {
         if alpha_x.max(alpha_y) < Self::SMOOTH {
             return None;
         }
         Some(Self {
+            distribution,
             alpha_x: alpha_x.max(Self::LEAST_ALPHA),
             alpha_y: alpha_y.max(Self::LEAST_ALPHA),
         })
     }
 
+    /// [`Microfacets::new`] for GGX.
+    #[inline]
+    pub fn ggx(alpha_x: f32, alpha_y: f32) -> Option<Self> {
+        Self::new(Distribution::Ggx, alpha_x, alpha_y)
+    }
+
+    /// [`Microfacets::ggx`], where less than a slope of 0.002 is that much.
+    pub fn never_smooth(alpha_x: f32, alpha_y: f32) -> Self {
+        Self {
+            distribution: Distribution::Ggx,
+            alpha_x: alpha_x.max(2.0 * Self::SMOOTH),
+            alpha_y: alpha_y.max(2.0 * Self::SMOOTH),
+        }
+    }
+
     /// Whether it is the same along both tangents.
+    #[inline]
     pub fn is_isotropic(&self) -> bool {
         self.alpha_x == self.alpha_y
     }
 
     /// The slope for pbrt-v4's perceptual roughness.
+    #[inline]
     pub fn alpha_from_roughness(roughness: f32) -> f32 {
         roughness.sqrt()
     }
 
-    /// Density of microfacet area by solid angle of its normal `m`.
-    #[inline]
-    pub fn d(&self, m: Vec3) -> f32 {
-        // Heitz 2014, equation 85, without dividing by a cosine that may be 0.
-        let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
-        let e = x * x + y * y + m.z * m.z;
-        1.0 / (PI * self.alpha_x * self.alpha_y * e * e)
+    /// The slopes along the two tangents.
+    pub fn alpha(&self) -> [f32; 2] {
+        [self.alpha_x, self.alpha_y]
     }
 
-    /// Smith's Lambda.
+    /// Density of microfacet area by solid angle of its normal `m`, which has z >= 0.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
+        match self.distribution {
+            // Heitz 2014, equation 85, without dividing by a cosine that may be 0.
+            Distribution::Ggx => {
+                let e = x * x + y * y + m.z * m.z;
+                1.0 / (PI * self.alpha_x * self.alpha_y * e * e)
+            }
+            Distribution::Beckmann => {
+                let z2 = m.z * m.z;
+                let slope2 = (x * x + y * y) / z2;
+                // Also where a grazing normal makes the slope infinite.
+                if slope2 < 80.0 {
+                    (-slope2).exp() / (PI * self.alpha_x * self.alpha_y * z2 * z2)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    /// Smith's Lambda, of a direction that goes up or down. It is one formula: Lambda(-w) = -1 - Lambda(w).
+    #[inline]
+    pub(super) fn signed_lambda(&self, w: Vec3) -> f32 {
+        let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
+        let across2 = x * x + y * y;
+        match self.distribution {
+            Distribution::Ggx => {
+                if w.z == 0.0 {
+                    return f32::INFINITY;
+                }
+                0.5 * ((1.0 + across2 / (w.z * w.z)).sqrt().copysign(w.z) - 1.0)
+            }
+            Distribution::Beckmann => {
+                let a = w.z / across2.sqrt();
+                // 0 / 0 is a direction without extent; straight up and down are infinite.
+                if a == 0.0 { f32::INFINITY } else { beckmann::lambda(a) }
+            }
+        }
+    }
+
+    /// Smith's Lambda, the same for either side.
     #[inline]
     pub fn lambda(&self, w: Vec3) -> f32 {
-        let z2 = w.z * w.z;
-        if z2 == 0.0 {
-            return f32::INFINITY;
+        match self.distribution {
+            Distribution::Ggx => {
+                let z2 = w.z * w.z;
+                if z2 == 0.0 {
+                    return f32::INFINITY;
+                }
+                let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
+                0.5 * ((1.0 + (x * x + y * y) / z2).sqrt() - 1.0)
+            }
+            Distribution::Beckmann => self.signed_lambda(Vec3::new(w.x, w.y, w.z.abs())),
         }
-        let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
-        0.5 * ((1.0 + (x * x + y * y) / z2).sqrt() - 1.0)
     }
 
     /// Fraction of microfacets not masked from `w`.
@@ -80,17 +155,28 @@ impl Ggx {
     }
 
     /// Samples a normal visible from `w` (in its upper or lower hemisphere alike; the normal has z >= 0) with density
-    /// [`Ggx::visible_normal_pdf`], by spherical caps (Dupuy and Benyoub 2023).
+    /// [`Microfacets::visible_normal_pdf`].
     #[inline]
     pub fn sample_visible_normal(&self, w: Vec3, u: Vec2) -> Vec3 {
-        let w = if w.z < 0.0 { -w } else { w };
-        // To the configuration where the surface is a hemisphere.
+        self.sample_normal_seen_from(if w.z < 0.0 { -w } else { w }, u)
+    }
+
+    /// Samples a normal with z >= 0 that faces `w`, which may look at the facets from below their horizon; the density is
+    /// proportional to D(m) (w . m).
+    #[inline]
+    pub(super) fn sample_normal_seen_from(&self, w: Vec3, u: Vec2) -> Vec3 {
+        // To the configuration of roughness 1: where the surface of GGX is a hemisphere.
         let wh = Vec3::new(self.alpha_x * w.x, self.alpha_y * w.y, w.z).normalize();
-        // A point of the spherical cap above -wh.z is where light from wh is reflected to.
-        let (sin_phi, cos_phi) = (2.0 * PI * u.x).sin_cos();
-        let z = (1.0 - u.y) * (1.0 + wh.z) - wh.z;
-        let r = (1.0 - z * z).max(0.0).sqrt();
-        let m = Vec3::new(r * cos_phi, r * sin_phi, z) + wh;
+        let m = match self.distribution {
+            Distribution::Ggx => {
+                // By spherical caps (Dupuy and Benyoub 2023): a point of the cap above -wh.z is where light from wh is reflected to.
+                let (sin_phi, cos_phi) = (2.0 * PI * u.x).sin_cos();
+                let z = (1.0 - u.y) * (1.0 + wh.z) - wh.z;
+                let r = (1.0 - z * z).max(0.0).sqrt();
+                Vec3::new(r * cos_phi, r * sin_phi, z) + wh
+            }
+            Distribution::Beckmann => (-beckmann::sample_visible_slope(wh, u)).extend(1.0),
+        };
         Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0))
             .try_normalize()
             .unwrap_or(Vec3::Z)
@@ -123,19 +209,25 @@ mod tests {
         sum
     }
 
+    fn both<const N: usize>(slopes: [(f32, f32); N]) -> impl Iterator<Item = (Distribution, (f32, f32))> {
+        [Distribution::Ggx, Distribution::Beckmann]
+            .into_iter()
+            .flat_map(move |d| slopes.map(|s| (d, s)))
+    }
+
     #[test]
     fn projected_microfacet_area_is_one() {
-        for (ax, ay) in [(0.1, 0.1), (0.5, 0.2), (1.0, 0.7)] {
-            let ggx = Ggx::new(ax, ay).unwrap();
-            let area = integrate(|m| ggx.d(m) * m.z);
-            assert!((area - 1.0).abs() < 1e-3, "alpha {ax} {ay}: {area}");
+        for (distribution, (ax, ay)) in both([(0.1, 0.1), (0.5, 0.2), (1.0, 0.7)]) {
+            let facets = Microfacets::new(distribution, ax, ay).unwrap();
+            let area = integrate(|m| facets.d(m) * m.z);
+            assert!((area - 1.0).abs() < 1e-3, "{facets:?}: {area}");
         }
     }
 
     #[test]
     fn visible_normals_integrate_to_one_from_every_direction() {
-        for (ax, ay) in [(0.3, 0.3), (0.6, 0.2)] {
-            let ggx = Ggx::new(ax, ay).unwrap();
+        for (distribution, (ax, ay)) in both([(0.3, 0.3), (0.6, 0.2)]) {
+            let facets = Microfacets::new(distribution, ax, ay).unwrap();
             for w in [
                 Vec3::Z,
                 Vec3::new(0.6, 0.0, 0.8),
@@ -145,12 +237,32 @@ mod tests {
                 let w = w.normalize();
                 let sum = integrate(|m| {
                     if w.dot(m) > 0.0 {
-                        ggx.visible_normal_pdf(w, m)
+                        facets.visible_normal_pdf(w, m)
                     } else {
                         0.0
                     }
                 });
-                assert!((sum - 1.0).abs() < 2e-3, "alpha {ax} {ay}, w {w}: {sum}");
+                assert!((sum - 1.0).abs() < 2e-3, "{facets:?}, w {w}: {sum}");
+            }
+        }
+    }
+
+    #[test]
+    fn lambda_continues_below_the_horizon() {
+        for (distribution, (ax, ay)) in both([(0.3, 0.3), (0.6, 0.2)]) {
+            let facets = Microfacets::new(distribution, ax, ay).unwrap();
+            for w in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.5, -0.8, 0.2), Vec3::Z] {
+                let w = w.normalize();
+                let (up, down) = (facets.signed_lambda(w), facets.signed_lambda(-w));
+                assert!((up - facets.lambda(w)).abs() <= 1e-6 * up);
+                assert!(
+                    (down + 1.0 + up).abs() < 1e-5 * (1.0 + up),
+                    "{facets:?}, {w}: {up} and {down}"
+                );
+                // The area of facets seen from below, z (1 + Lambda), by quadrature.
+                let seen = integrate(|m| facets.d(m) * (-w).dot(m).max(0.0));
+                let expected = f64::from(-w.z * (1.0 + down));
+                assert!((seen - expected).abs() < 1e-3, "{facets:?}, {w}: {seen} and {expected}");
             }
         }
     }

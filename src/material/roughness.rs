@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Ggx;
+use super::{Distribution, Microfacets};
 use crate::geometry::SurfaceInteraction;
 use crate::texture::FloatTexture;
 
@@ -10,7 +10,7 @@ use crate::texture::FloatTexture;
 #[derive(Clone, Debug)]
 pub enum Roughness {
     /// The same everywhere; `None` is smooth.
-    Constant(Option<Ggx>),
+    Constant(Option<Microfacets>),
     /// From textures.
     Textured(Arc<TexturedRoughness>),
 }
@@ -22,37 +22,48 @@ pub struct TexturedRoughness {
     v: FloatTexture,
     /// Whether the values are pbrt's roughness, not slopes.
     remap: bool,
+    distribution: Distribution,
 }
 
 impl Roughness {
     /// Of `u` and `v` along the tangents: pbrt-v4's perceptual roughness with `remap`, else the slopes themselves.
-    pub fn new(u: FloatTexture, v: FloatTexture, remap: bool) -> Self {
+    pub fn new(u: FloatTexture, v: FloatTexture, remap: bool, distribution: Distribution) -> Self {
         match (&u, &v) {
-            (FloatTexture::Constant(u), FloatTexture::Constant(v)) => Self::Constant(distribution(*u, *v, remap)),
-            _ => Self::Textured(Arc::new(TexturedRoughness { u, v, remap })),
+            (FloatTexture::Constant(u), FloatTexture::Constant(v)) => {
+                Self::Constant(microfacets(*u, *v, remap, distribution))
+            }
+            _ => Self::Textured(Arc::new(TexturedRoughness {
+                u,
+                v,
+                remap,
+                distribution,
+            })),
         }
     }
 
     /// The microfacets at a surface point; `None` where it is smooth.
     #[inline]
-    pub fn at(&self, si: &SurfaceInteraction) -> Option<Ggx> {
+    pub fn at(&self, si: &SurfaceInteraction) -> Option<Microfacets> {
         match self {
-            Self::Constant(ggx) => *ggx,
-            Self::Textured(textures) => distribution(textures.u.at(si), textures.v.at(si), textures.remap),
+            Self::Constant(facets) => *facets,
+            Self::Textured(textures) => {
+                let (u, v) = (textures.u.at(si), textures.v.at(si));
+                microfacets(u, v, textures.remap, textures.distribution)
+            }
         }
     }
 }
 
-impl From<Option<Ggx>> for Roughness {
-    fn from(ggx: Option<Ggx>) -> Self {
-        Self::Constant(ggx)
+impl From<Option<Microfacets>> for Roughness {
+    fn from(facets: Option<Microfacets>) -> Self {
+        Self::Constant(facets)
     }
 }
 
-fn distribution(u: f32, v: f32, remap: bool) -> Option<Ggx> {
+fn microfacets(u: f32, v: f32, remap: bool, distribution: Distribution) -> Option<Microfacets> {
     let alpha = |r: f32| {
         let r = r.max(0.0);
-        if remap { Ggx::alpha_from_roughness(r) } else { r }
+        if remap { Microfacets::alpha_from_roughness(r) } else { r }
     };
-    Ggx::new(alpha(u), alpha(v))
+    Microfacets::new(distribution, alpha(u), alpha(v))
 }

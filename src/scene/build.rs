@@ -3,21 +3,18 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::materials::compile_materials;
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
-use super::textures::{SpectrumUse, TextureCompiler};
+use super::textures::TextureCompiler;
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
-use crate::desc::{
-    AreaLightDesc, ConductorDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, MaterialDesc, MaterialKind,
-    SceneDesc, ShapeDesc,
-};
+use crate::desc::{AreaLightDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, Shape, TriangleMesh, WorldBuilder};
 use crate::light::{
     AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
 };
-use crate::material::{ConductorIor, Material};
 use crate::math::DVec3;
 use crate::texture::FloatTexture;
 
@@ -56,11 +53,7 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
-        let materials = desc
-            .materials
-            .iter()
-            .map(|desc| material(&mut builder.textures, desc))
-            .collect();
+        let materials = compile_materials(&desc.materials, &mut builder.textures);
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
@@ -258,28 +251,6 @@ impl SceneBuilder<'_> {
             }
         };
         self.lights.push(light);
-    }
-}
-
-fn material(textures: &mut TextureCompiler<'_>, desc: &MaterialDesc) -> Material {
-    match &desc.kind {
-        MaterialKind::Diffuse { reflectance } => Material::Diffuse {
-            reflectance: textures.spectrum(reflectance, SpectrumUse::Albedo),
-        },
-        MaterialKind::Conductor { interface, roughness } => Material::Conductor {
-            ior: match interface {
-                ConductorDesc::Ior { eta, k } => ConductorIor::Measured {
-                    eta: textures.spectrum(eta, SpectrumUse::Unbounded),
-                    k: textures.spectrum(k, SpectrumUse::Unbounded),
-                },
-                ConductorDesc::Reflectance(r) => ConductorIor::Reflectance(textures.spectrum(r, SpectrumUse::Albedo)),
-            },
-            roughness: textures.roughness(roughness),
-        },
-        MaterialKind::Dielectric { eta, roughness } => Material::Dielectric {
-            eta: textures.spectra.glass_index(eta),
-            roughness: textures.roughness(roughness),
-        },
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod build;
 mod cutouts;
+mod materials;
 mod shapes;
 mod spectra;
 mod textures;

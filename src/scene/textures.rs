@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
-    ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, RoughnessDesc, SceneDesc,
+    ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, RoughnessDesc, SceneDesc,
     SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
 };
 use crate::error::Span;
-use crate::material::Roughness;
+use crate::material::{Distribution, Roughness};
 use crate::math::DAffine3;
 use crate::spectrum::{CompiledSpectrum, RgbKind, RgbSampler};
 use crate::texture::{
@@ -66,7 +66,11 @@ impl<'a> TextureCompiler<'a> {
 
     /// The roughness of a microfacet surface.
     pub fn roughness(&mut self, desc: &RoughnessDesc) -> Roughness {
-        Roughness::new(self.float(&desc.u), self.float(&desc.v), desc.remap)
+        let distribution = match desc.distribution {
+            DistributionDesc::Ggx => Distribution::Ggx,
+            DistributionDesc::Beckmann => Distribution::Beckmann,
+        };
+        Roughness::new(self.float(&desc.u), self.float(&desc.v), desc.remap, distribution)
     }
 
     fn compile(&self, desc: &SpectrumDesc, usage: SpectrumUse) -> CompiledSpectrum {

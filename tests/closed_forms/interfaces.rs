@@ -3,7 +3,7 @@
 
 use lucerna::spectrum::{Spectrum, SpectrumRole};
 
-use super::common::microfacet::{Slopes, conductor_reflectance, dielectric_reflectance, direction};
+use super::common::microfacet::{Shape, Slopes, conductor_reflectance, dielectric_reflectance, direction};
 use super::common::render::expected_rgb;
 use super::{check_uniform, options, quad};
 
@@ -136,7 +136,7 @@ fn a_rough_conductor_reflects_what_its_model_says() {
         (ROUGH[3], 70.0, 80.0),
     ] {
         let wo = direction(theta, phi);
-        let slopes = Slopes(alpha.0, alpha.1);
+        let slopes = Slopes(alpha.0, alpha.1, Shape::Ggx);
         let grey = format!("\"conductor\" \"rgb reflectance\" [0.6 0.6 0.6] {}", roughness(alpha));
         let k = 2.0 * (0.6_f64 / 0.4).sqrt();
         let expected = slopes.reflected(wo, |cos| conductor_reflectance(cos, 1.0, k));
@@ -160,7 +160,7 @@ fn a_rough_conductor_reflects_what_its_model_says() {
     check_uniform("copper", &text, 256, |mode| {
         expected_rgb(mode, &spectra, |v| {
             let fresnel = |cos| conductor_reflectance(cos, v[1], v[2]);
-            v[0] / photometric * Slopes(alpha.0, alpha.1).reflected(wo, fresnel)
+            v[0] / photometric * Slopes(alpha.0, alpha.1, Shape::Ggx).reflected(wo, fresnel)
         })
     });
 }
@@ -170,14 +170,15 @@ fn roughness_is_remapped_to_the_square_of_alpha() {
     // pbrt-v4: alpha is the square root of the roughness.
     let metal = "\"conductor\" \"rgb reflectance\" [0.6 0.6 0.6] \"float roughness\" 0.25";
     let k = 2.0 * (0.6_f64 / 0.4).sqrt();
-    let expected = Slopes(0.5, 0.5).reflected(direction(75.0, 0.0), |cos| conductor_reflectance(cos, 1.0, k));
+    let expected =
+        Slopes(0.5, 0.5, Shape::Ggx).reflected(direction(75.0, 0.0), |cos| conductor_reflectance(cos, 1.0, k));
     check_uniform(metal, &plane(75.0, 0.0, 1, WHITE_SKY, metal), 256, |_| [expected; 3]);
 }
 
 #[test]
 fn a_rough_dielectric_reflects_and_transmits_what_its_model_says() {
     for (alpha, theta, phi) in [(ROUGH[0], 30.0, 0.0), (ROUGH[1], 60.0, 0.0), (ROUGH[3], 70.0, 30.0)] {
-        let slopes = Slopes(alpha.0, alpha.1);
+        let slopes = Slopes(alpha.0, alpha.1, Shape::Ggx);
         let glass = format!("\"dielectric\" \"float eta\" 1.5 {}", roughness(alpha));
         for (side, theta_seen, eta) in [("above", theta, 1.5), ("below", 180.0 - theta, 1.0 / 1.5)] {
             let wo = direction(theta, phi);

@@ -4,6 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
+use statrs::function::erf;
 
 /// Fresnel reflectance of a dielectric for a cosine on the side of index 1 of a boundary to index `eta`; 1 beyond the critical
 /// angle. From Fresnel's amplitudes by angles, as in textbooks.
@@ -38,22 +39,36 @@ pub fn conductor_reflectance(cos: f64, n: f64, k: f64) -> f64 {
     0.5 * (s + p)
 }
 
-/// GGX slopes along x and y.
+/// How slopes are distributed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    Ggx,
+    Beckmann,
+}
+
+/// Slopes along x and y.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes(pub f64, pub f64);
+pub struct Slopes(pub f64, pub f64, pub Shape);
 
 impl Slopes {
     fn lambda(self, w: DVec3) -> f64 {
-        let Self(ax, ay) = self;
+        let Self(ax, ay, shape) = self;
         let tan2 = ((ax * w.x).powi(2) + (ay * w.y).powi(2)) / (w.z * w.z);
-        0.5 * ((1.0 + tan2).sqrt() - 1.0)
+        match shape {
+            Shape::Ggx => 0.5 * ((1.0 + tan2).sqrt() - 1.0),
+            Shape::Beckmann if tan2 < 1e-6 => 0.0,
+            Shape::Beckmann => {
+                let a = 1.0 / tan2.sqrt();
+                (-a * a).exp() / (2.0 * a * PI.sqrt()) - 0.5 * erf::erfc(a)
+            }
+        }
     }
 
     /// The integral over facets m seen from `wo` (z > 0) of `carried(m, wo . m)`: a direction and the share of light that goes
     /// there, of which masking leaves G2 (of correlated heights).
     ///
-    /// f cos dw = share D(m) (wo . m) G2 / cos_o dm, and D(m) cos_m dm is uniform in azimuth and in s = r² / (1 + r²) of the slope
-    /// (ax r cos phi, ay r sin phi).
+    /// f cos dw = share D(m) (wo . m) G2 / cos_o dm, and D(m) cos_m dm is uniform in azimuth and in s = 1 / (1 + r²) of the slope
+    /// (ax r cos phi, ay r sin phi); in s = exp(-r²) for Beckmann's.
     fn integrate(self, wo: DVec3, carried: impl Fn(DVec3, f64) -> (DVec3, f64)) -> f64 {
         const STEPS: (usize, usize) = (256, 256);
         let mut sum = 0.0;
@@ -61,7 +76,10 @@ impl Slopes {
             // The square concentrates steps where s nears 1: at grazing facets.
             let x = (i as f64 + 0.5) / STEPS.0 as f64;
             let (rest, ds) = (x * x, 2.0 * x);
-            let r = ((1.0 - rest) / rest).sqrt();
+            let r = match self.2 {
+                Shape::Ggx => ((1.0 - rest) / rest).sqrt(),
+                Shape::Beckmann => (-rest.ln()).sqrt(),
+            };
             for j in 0..STEPS.1 {
                 let phi = TAU * (j as f64 + 0.5) / STEPS.1 as f64;
                 let m = DVec3::new(-self.0 * r * phi.cos(), -self.1 * r * phi.sin(), 1.0).normalize();

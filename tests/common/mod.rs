@@ -7,6 +7,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of this module")]
 
 pub mod chi2;
+pub mod grooves;
 pub mod means;
 pub mod microfacet;
 pub mod random;

@@ -304,8 +304,8 @@ fn entities() {
             "",
         ),
         (
-            "WorldBegin Material @\"coateddiffuse\"",
-            "the material `coateddiffuse` is not supported yet",
+            "WorldBegin Material @\"hair\"",
+            "the material `hair` is not supported yet",
             "",
         ),
         ("WorldBegin Material @\"difuse\"", "unknown material", "`diffuse`"),
@@ -552,7 +552,7 @@ fn lenient_reading_turns_the_unknown_into_warnings() {
         Texture "a" "spectrum" "ptex" "string filename" "x"
         MakeNamedMedium "m" "string type" "homogeneous" MediumInterface "m"
         Material "diffuse" "texture reflectance" "b"
-        Material "coateddiffuse" "float thickness" 3
+        Material "subsurface" "float thickness" 3
         Shape "sphere" "float what" 3 "float zmin" 0
         Shape "disk"
         LightSource "spot"

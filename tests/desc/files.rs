@@ -147,6 +147,7 @@ fn spectra_come_from_files() {
     ]);
     let MaterialKind::Diffuse {
         reflectance: Textured::Value(reflectance),
+        ..
     } = &found.materials[1].kind
     else {
         panic!()

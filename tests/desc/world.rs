@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat4, DVec3, Vec2, Vec3};
 use lucerna::desc::{
-    ConductorDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc, ShapeDesc, ShapeKind, SpectrumDesc,
-    SpectrumValue, Textured, load,
+    ConductorDesc, DistributionDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc, ShapeDesc,
+    ShapeKind, SpectrumDesc, SpectrumValue, Textured, load,
 };
 
 use crate::{STRICT, shared, world};
@@ -120,7 +120,7 @@ fn materials_have_the_parameters_of_pbrt() {
     );
     let kinds: Vec<&MaterialKind> = scene.materials.iter().skip(1).map(|m| &m.kind).collect();
     let reflectance = |i: usize| match kinds[i] {
-        MaterialKind::Diffuse { reflectance } => value(reflectance),
+        MaterialKind::Diffuse { reflectance, .. } => value(reflectance),
         other => panic!("{other:?}"),
     };
     let samples = SpectrumValue::Samples(vec![(400.0, 0.1), (500.0, 0.25), (700.0, 0.5)]);
@@ -130,6 +130,7 @@ fn materials_have_the_parameters_of_pbrt() {
         MaterialKind::Conductor {
             interface: ConductorDesc::Ior { eta, k },
             roughness,
+            ..
         } => (value(eta).clone(), value(k).clone(), roughness.clone()),
         other => panic!("{other:?}"),
     };
@@ -138,6 +139,7 @@ fn materials_have_the_parameters_of_pbrt() {
         u: Textured::Value(u),
         v: Textured::Value(v),
         remap,
+        distribution: DistributionDesc::Ggx,
     };
     assert_eq!(
         ior(2),
@@ -150,6 +152,7 @@ fn materials_have_the_parameters_of_pbrt() {
     let MaterialKind::Conductor {
         interface: ConductorDesc::Reflectance(r),
         roughness,
+        ..
     } = kinds[3]
     else {
         panic!()
@@ -159,7 +162,7 @@ fn materials_have_the_parameters_of_pbrt() {
         (&SpectrumValue::Rgb([0.1, 0.2, 0.3]), rough(0.5, 0.25, true))
     );
     let eta = |i: usize| match kinds[i] {
-        MaterialKind::Dielectric { eta, roughness } => (eta.value.clone(), roughness.u.clone()),
+        MaterialKind::Dielectric { eta, roughness, .. } => (eta.value.clone(), roughness.u.clone()),
         other => panic!("{other:?}"),
     };
     assert_eq!(eta(5), (SpectrumValue::Constant(1.33), Textured::Value(0.0)));
@@ -285,7 +288,7 @@ fn attribute_sets_defaults_for_what_follows() {
         .collect();
     assert_eq!(radii, [3.0, 2.0, 5.0, 1.0]);
     assert_eq!(scene.lights[0].scale, 4.0);
-    let MaterialKind::Diffuse { reflectance } = &scene.materials[1].kind else {
+    let MaterialKind::Diffuse { reflectance, .. } = &scene.materials[1].kind else {
         panic!()
     };
     assert_eq!(*value(reflectance), SpectrumValue::Rgb([0.1; 3]));

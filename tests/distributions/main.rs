@@ -6,6 +6,8 @@ mod common;
 mod bsdfs;
 mod cameras;
 mod light_samplers;
+mod energy;
+mod kinds;
 mod lights;
 
 use glam::Vec2;

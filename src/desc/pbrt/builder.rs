@@ -231,9 +231,12 @@ impl Builder {
         };
         let reader = ParamReader::new(&mut self.context, class, &name, name_span, params, &defaults);
         match directive {
-            "Material" => self.state.material = self.world.materials.add(material::read(reader, &name, None)),
+            "Material" => {
+                let material = material::read(reader, &mut self.world.materials, &name, None);
+                self.state.material = self.world.materials.add(material);
+            }
             "MakeNamedMaterial" => {
-                let material = material::read_named(reader);
+                let material = material::read_named(reader, &mut self.world.materials);
                 if let Some(problem) = self.world.materials.define(name, name_span, material) {
                     self.context.report.error(name_span, problem);
                 }

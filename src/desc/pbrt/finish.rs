@@ -11,7 +11,8 @@ use super::shape::{PendingMeshes, RawKind};
 use super::world::{RawShape, Slot, World, default_material};
 use super::{images, suggest};
 use crate::desc::{
-    InstanceDesc, MaterialDesc, MaterialId, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc, ShapeKind, ply,
+    InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc,
+    ShapeKind, ply,
 };
 use crate::error::{Error, Result, Span};
 
@@ -120,7 +121,47 @@ fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> (Vec<MaterialDesc
         let message = format!("there is no named material `{name}`");
         report.unknown(span, message, "the default material stands in", &name, &names);
     }
+    resolve_mixes(&mut materials, &ids, report);
     (materials, ids)
+}
+
+/// How many mixes may contain one another in a row.
+const DEEPEST_MIX: usize = 64;
+
+/// Makes the slots that mixes name the ids of their materials.
+fn resolve_mixes(materials: &mut [MaterialDesc], ids: &[Option<MaterialId>], report: &mut Report) {
+    for material in &mut *materials {
+        let MaterialKind::Mix { materials: parts, .. } = &mut material.kind else {
+            continue;
+        };
+        let found = parts.map(|slot| ids[slot.0 as usize]);
+        if found.contains(&None) {
+            report.error(
+                material.span,
+                "a mix cannot contain the material `interface`, which is no surface",
+            );
+        }
+        *parts = found.map(|id| id.unwrap_or(MaterialId(0)));
+    }
+    // Each round settles the mixes of what is settled; what a cycle needs never is.
+    let mut settled: Vec<bool> = vec![false; materials.len()];
+    for _ in 0..=DEEPEST_MIX {
+        let now: Vec<bool> = materials
+            .iter()
+            .map(|material| match &material.kind {
+                MaterialKind::Mix { materials: parts, .. } => parts.iter().all(|id| settled[id.0 as usize]),
+                _ => true,
+            })
+            .collect();
+        if now == settled {
+            break;
+        }
+        settled = now;
+    }
+    for (material, _) in materials.iter().zip(&settled).filter(|(_, settled)| !**settled) {
+        let message = format!("this mix contains itself, or more than {DEEPEST_MIX} mixes in a row");
+        report.error(material.span, message);
+    }
 }
 
 /// Reads the mesh files, in parallel. One that cannot be read is complained about and empty.

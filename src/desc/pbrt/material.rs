@@ -1,27 +1,21 @@
 //! `Material` and `MakeNamedMaterial`.
 
+use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
-use super::spectrum::Use;
-use super::world::default_material;
-use crate::desc::{ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, SpectrumDesc, SpectrumValue, Textured};
+use super::world::{Materials, default_material};
+use crate::desc::material_kinds as kinds;
+use crate::desc::{
+    CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, Parameter,
+    PrincipledDesc, RoughnessDesc, Textured,
+};
 use crate::error::Span;
 
-const KNOWN: [&str; 4] = ["diffuse", "conductor", "dielectric", "interface"];
-const LATER: [&str; 8] = [
-    "coateddiffuse",
-    "coatedconductor",
-    "diffusetransmission",
-    "thindielectric",
-    "hair",
-    "measured",
-    "mix",
-    "subsurface",
-];
+const LATER: [&str; 3] = ["hair", "measured", "subsurface"];
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
-pub(super) fn read_named(mut reader: ParamReader<'_>) -> Option<MaterialDesc> {
+pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> Option<MaterialDesc> {
     match reader.string("type") {
-        Some((kind, span)) => read(reader, &kind, Some(span)),
+        Some((kind, span)) => read(reader, materials, &kind, Some(span)),
         None => {
             if !reader.has("type") {
                 let span = reader.span;
@@ -35,106 +29,195 @@ pub(super) fn read_named(mut reader: ParamReader<'_>) -> Option<MaterialDesc> {
 
 /// Reads a material of type `kind`, which stands at `span` unless where the reader has it. `None`: no surface at all. What cannot
 /// be read becomes the default material.
-pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, span: Option<Span>) -> Option<MaterialDesc> {
+pub(super) fn read(
+    mut reader: ParamReader<'_>,
+    materials: &mut Materials,
+    kind: &str,
+    span: Option<Span>,
+) -> Option<MaterialDesc> {
     let span = span.unwrap_or(reader.span);
-    let kind = match kind {
-        "diffuse" => diffuse(&mut reader),
-        "conductor" => conductor(&mut reader),
-        "dielectric" => dielectric(&mut reader),
-        "interface" => {
-            reader.finish();
-            return None;
-        }
-        "" | "none" => {
-            let message = format!("the material `{kind}` is deprecated: it is taken for `interface`");
-            reader.report().warning(span, message);
-            reader.finish();
-            return None;
-        }
-        _ => {
-            let classes = (&KNOWN[..], &LATER[..]);
-            unknown_type(
-                reader.report(),
-                "material",
-                kind,
-                span,
-                classes,
-                "a diffuse one stands in",
-            );
-            return Some(default_material(span));
-        }
+    let Some(entry) = MATERIALS.iter().find(|entry| entry.name == kind) else {
+        return unknown(reader, kind, span);
     };
-    reader.unsupported(&["displacement", "normalmap"]);
+    let kind = read_kind(&mut reader, materials, entry.name);
+    if kind.is_some() {
+        reader.unsupported(&["displacement", "normalmap"]);
+    }
     reader.finish();
-    Some(MaterialDesc { name: None, kind, span })
+    kind.map(|kind| MaterialDesc { name: None, kind, span })
 }
 
-fn diffuse(reader: &mut ParamReader<'_>) -> MaterialKind {
-    MaterialKind::Diffuse {
-        reflectance: textured_or(reader, "reflectance", Use::Albedo, SpectrumValue::Constant(0.5)),
+fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<MaterialDesc> {
+    if matches!(kind, "" | "none") {
+        let message = format!("the material `{kind}` is deprecated: it is taken for `interface`");
+        reader.report().warning(span, message);
+        reader.finish();
+        return None;
     }
+    let known = MATERIALS.each_ref().map(|entry| entry.name);
+    let classes = (&known[..], &LATER[..]);
+    unknown_type(
+        reader.report(),
+        "material",
+        kind,
+        span,
+        classes,
+        "a diffuse one stands in",
+    );
+    Some(default_material(span))
 }
 
-fn conductor(reader: &mut ParamReader<'_>) -> MaterialKind {
-    let reflectance = reader.spectrum_textured("reflectance", Use::Albedo);
-    let interface = match reflectance {
-        Some(reflectance) => {
-            if reader.has("eta") || reader.has("k") {
-                let span = reader.span_of("reflectance");
-                let message = "a conductor has either `reflectance` or `eta` and `k`";
-                reader.report().error(span, message);
-                reader.spectrum_textured("eta", Use::Ior);
-                reader.spectrum_textured("k", Use::Absorption);
-            }
-            ConductorDesc::Reflectance(reflectance)
-        }
-        None => {
-            let copper = |part: &str| SpectrumValue::Named(format!("metal-Cu-{part}"));
-            ConductorDesc::Ior {
-                eta: textured_or(reader, "eta", Use::Ior, copper("eta")),
-                k: textured_or(reader, "k", Use::Absorption, copper("k")),
-            }
-        }
+/// The material of one of the kinds in [`MATERIALS`].
+fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str) -> Option<MaterialKind> {
+    Some(match kind {
+        "diffuse" => MaterialKind::Diffuse {
+            reflectance: reader.spectrum_textured_by(&kinds::REFLECTANCE),
+            roughness: reader.float_textured_by(&kinds::DIFFUSE_ROUGHNESS),
+        },
+        "diffusetransmission" => MaterialKind::DiffuseTransmission {
+            reflectance: reader.spectrum_textured_by(&kinds::REFLECTED),
+            transmittance: reader.spectrum_textured_by(&kinds::TRANSMITTED),
+            scale: reader.float_by(&kinds::TRANSMISSION_SCALE) as f32,
+        },
+        "conductor" => MaterialKind::Conductor {
+            interface: metal(reader, &kinds::ETA_METAL, &kinds::K),
+            roughness: roughness(reader, &PLAIN),
+            multiple_scattering: reader.bool_by(&kinds::MULTIPLE_SCATTERING),
+        },
+        "dielectric" => MaterialKind::Dielectric {
+            eta: reader.glass_index_by(&kinds::ETA),
+            roughness: roughness(reader, &PLAIN),
+            multiple_scattering: reader.bool_by(&kinds::MULTIPLE_SCATTERING),
+        },
+        "thindielectric" => MaterialKind::ThinDielectric {
+            eta: reader.glass_index_by(&kinds::ETA),
+        },
+        "coateddiffuse" => MaterialKind::CoatedDiffuse {
+            reflectance: reader.spectrum_textured_by(&kinds::REFLECTANCE),
+            coat: coat(reader, &kinds::ETA, &PLAIN),
+        },
+        "coatedconductor" => MaterialKind::CoatedConductor {
+            interface: metal(reader, &kinds::CONDUCTOR_ETA, &kinds::CONDUCTOR_K),
+            roughness: roughness(reader, &CONDUCTOR),
+            coat: coat(reader, &kinds::INTERFACE_ETA, &INTERFACE),
+        },
+        "mix" => mix(reader, materials),
+        "principled" => MaterialKind::Principled(principled(reader)),
+        _ => return None,
+    })
+}
+
+fn metal(reader: &mut ParamReader<'_>, eta: &'static Parameter, k: &'static Parameter) -> ConductorDesc {
+    let Some(reflectance) = reader.reflectance_by(&kinds::METAL_REFLECTANCE) else {
+        return ConductorDesc::Ior {
+            eta: reader.spectrum_textured_by(eta),
+            k: reader.spectrum_textured_by(k),
+        };
     };
-    MaterialKind::Conductor {
-        interface,
-        roughness: roughness(reader),
+    if reader.has(eta.name) || reader.has(k.name) {
+        let span = reader.span_of(kinds::METAL_REFLECTANCE.name);
+        let message = format!(
+            "a conductor has either `reflectance` or `{}` and `{}`",
+            eta.name, k.name
+        );
+        reader.report().error(span, message);
+        reader.spectrum_textured_by(eta);
+        reader.spectrum_textured_by(k);
     }
+    ConductorDesc::Reflectance(reflectance)
 }
 
-fn dielectric(reader: &mut ParamReader<'_>) -> MaterialKind {
-    let eta = reader.spectrum_or_float("eta", Use::Ior).unwrap_or(SpectrumDesc {
-        value: SpectrumValue::Constant(1.5),
-        span: reader.span,
-    });
-    if let SpectrumValue::Rgb(_) | SpectrumValue::Blackbody(_) = eta.value {
-        let message = "the index of refraction of a dielectric is a number or a spectrum, not a colour";
-        reader.report().error(eta.span, message);
-    }
-    MaterialKind::Dielectric {
-        eta,
-        roughness: roughness(reader),
-    }
-}
+/// The parameters that say how rough something is: both ways, along u, along v.
+type RoughnessNames = [&'static Parameter; 3];
 
-/// `roughness`, overridden by `uroughness` and `vroughness`; smooth by default.
-fn roughness(reader: &mut ParamReader<'_>) -> RoughnessDesc {
-    let both = reader.not_negative_textured("roughness", Textured::Value(0.0));
+static PLAIN: RoughnessNames = [&kinds::ROUGHNESS, &kinds::U_ROUGHNESS, &kinds::V_ROUGHNESS];
+static CONDUCTOR: RoughnessNames = [
+    &kinds::CONDUCTOR_ROUGHNESS,
+    &kinds::CONDUCTOR_U_ROUGHNESS,
+    &kinds::CONDUCTOR_V_ROUGHNESS,
+];
+static INTERFACE: RoughnessNames = [
+    &kinds::INTERFACE_ROUGHNESS,
+    &kinds::INTERFACE_U_ROUGHNESS,
+    &kinds::INTERFACE_V_ROUGHNESS,
+];
+
+fn roughness(reader: &mut ParamReader<'_>, [both, u, v]: &RoughnessNames) -> RoughnessDesc {
+    let both = reader.float_textured_by(both);
     RoughnessDesc {
-        u: reader.not_negative_textured("uroughness", both.clone()),
-        v: reader.not_negative_textured("vroughness", both),
-        remap: reader.boolean("remaproughness", true),
+        u: reader.float_textured_or(u, both.clone()),
+        v: reader.float_textured_or(v, both),
+        remap: reader.bool_by(&kinds::REMAP_ROUGHNESS),
+        distribution: match reader.choice_by(&kinds::DISTRIBUTION) {
+            "beckmann" => DistributionDesc::Beckmann,
+            _ => DistributionDesc::Ggx,
+        },
     }
 }
 
-fn textured_or(
-    reader: &mut ParamReader<'_>,
-    name: &'static str,
-    usage: Use,
-    value: SpectrumValue,
-) -> Textured<SpectrumDesc> {
+fn coat(reader: &mut ParamReader<'_>, eta: &'static Parameter, names: &RoughnessNames) -> CoatDesc {
+    CoatDesc {
+        eta: reader.glass_index_by(eta),
+        roughness: roughness(reader, names),
+        thickness: reader.float_textured_by(&kinds::THICKNESS),
+        albedo: reader.spectrum_textured_by(&kinds::ALBEDO),
+        g: reader.float_textured_by(&kinds::G),
+        max_depth: reader.integer_by(&kinds::MAX_DEPTH).unsigned_abs(),
+        samples: reader.integer_by(&kinds::N_SAMPLES).unsigned_abs(),
+    }
+}
+
+fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind {
+    let name = kinds::MIX_MATERIALS.name;
+    let missing = !reader.has(name);
     let span = reader.span;
-    reader
-        .spectrum_textured(name, usage)
-        .unwrap_or(Textured::Value(SpectrumDesc { value, span }))
+    let slots = reader.take(name, &[ParamType::String]).and_then(|param| {
+        let Values::Strings(names) = &param.values else {
+            return None;
+        };
+        reader.check_count(&param, names.len(), 2)?;
+        // Names get slots now and materials at the end: until then an id counts slots.
+        Some([0, 1].map(|i| MaterialId(materials.named(names[i].clone(), param.values_span) as u32)))
+    });
+    if missing {
+        let message = "a mix names its two `materials`: `\"string materials\" [ \"one\" \"other\" ]`";
+        reader.report().error(span, message);
+    }
+    MaterialKind::Mix {
+        materials: slots.unwrap_or([MaterialId(0); 2]),
+        amount: reader.float_textured_by(&kinds::MIX_AMOUNT),
+    }
+}
+
+fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
+    if reader.has(kinds::PRINCIPLED_ETA.name) && reader.has(kinds::SPECULAR.name) {
+        let span = reader.span_of(kinds::SPECULAR.name);
+        reader
+            .report()
+            .error(span, "a principled material has either `eta` or `specular`");
+    }
+    let given = reader.has(kinds::SPECULAR.name);
+    let (eta, specular) = (
+        reader.float_by(&kinds::PRINCIPLED_ETA),
+        reader.float_by(&kinds::SPECULAR),
+    );
+    let reflected = (0.08 * specular).sqrt();
+    let mut textured = |parameter: &'static Parameter| -> Textured<f32> { reader.float_textured_by(parameter) };
+    PrincipledDesc {
+        roughness: textured(&kinds::PRINCIPLED_ROUGHNESS),
+        anisotropic: textured(&kinds::ANISOTROPIC),
+        metallic: textured(&kinds::METALLIC),
+        spec_trans: textured(&kinds::SPEC_TRANS),
+        spec_tint: textured(&kinds::SPEC_TINT),
+        sheen: textured(&kinds::SHEEN),
+        sheen_tint: textured(&kinds::SHEEN_TINT),
+        clearcoat: textured(&kinds::CLEARCOAT),
+        clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
+        base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
+        eta: if given {
+            ((1.0 + reflected) / (1.0 - reflected)) as f32
+        } else {
+            eta as f32
+        },
+    }
 }

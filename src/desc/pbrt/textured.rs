@@ -32,18 +32,6 @@ impl ParamReader<'_> {
         }
     }
 
-    /// [`Self::float_textured`], where a number must not be negative; `default` if none is given.
-    pub fn not_negative_textured(&mut self, name: &'static str, default: Textured<f32>) -> Textured<f32> {
-        match self.float_textured(name) {
-            Some(Textured::Value(value)) if value < 0.0 => {
-                self.out_of_range(name, &value.to_string(), "0 or more");
-                default
-            }
-            Some(value) => value,
-            None => default,
-        }
-    }
-
     /// A spectrum that may come from a texture.
     pub fn spectrum_textured(&mut self, name: &'static str, usage: Use) -> Option<Textured<SpectrumDesc>> {
         let kinds = [
@@ -164,8 +152,48 @@ impl ParamReader<'_> {
             ParameterKind::FloatTextured { default } | ParameterKind::Textured { default } => self
                 .float_textured(parameter.name)
                 .unwrap_or(Textured::Value(default as f32)),
+            ParameterKind::FloatTexturedIn { default, .. } => {
+                self.float_textured_or(parameter, Textured::Value(default.unwrap_or_default() as f32))
+            }
             _ => Textured::Value(0.0),
         }
+    }
+
+    /// A number that may come from a texture, within the range of its table; else `default`.
+    pub fn float_textured_or(&mut self, parameter: &'static Parameter, default: Textured<f32>) -> Textured<f32> {
+        let ParameterKind::FloatTexturedIn { range, .. } = parameter.kind else {
+            return default;
+        };
+        match self.float_textured(parameter.name) {
+            Some(Textured::Value(value)) if !range.contains(value.into()) => {
+                self.out_of_range(parameter.name, &value.to_string(), range.text());
+                default
+            }
+            Some(value) => value,
+            None => default,
+        }
+    }
+
+    /// A reflectance by its table, if one is given.
+    pub fn reflectance_by(&mut self, parameter: &'static Parameter) -> Option<Textured<SpectrumDesc>> {
+        self.spectrum_textured(parameter.name, Use::Albedo)
+    }
+
+    /// The index of refraction of a dielectric by its table.
+    pub fn glass_index_by(&mut self, parameter: &'static Parameter) -> SpectrumDesc {
+        let default = match parameter.kind {
+            ParameterKind::GlassIndex { default } => default,
+            _ => 1.0,
+        };
+        let span = self.span;
+        let eta = self
+            .spectrum_or_float(parameter.name, Use::Ior)
+            .unwrap_or_else(|| constant(default, span));
+        if let SpectrumValue::Rgb(_) | SpectrumValue::Blackbody(_) = eta.value {
+            let message = "the index of refraction of a dielectric is a number or a spectrum, not a colour";
+            self.report().error(eta.span, message);
+        }
+        eta
     }
 
     /// A spectrum that may come from a texture, by its table.
@@ -175,6 +203,15 @@ impl ParamReader<'_> {
             ParameterKind::Textured { default } => self
                 .spectrum_textured(parameter.name, Use::Texture)
                 .unwrap_or_else(|| Textured::Value(constant(default, span))),
+            ParameterKind::Reflectance { default } => self
+                .reflectance_by(parameter)
+                .unwrap_or_else(|| Textured::Value(constant(default.unwrap_or_default(), span))),
+            ParameterKind::MetalIndex { default } => self
+                .spectrum_textured(parameter.name, Use::Ior)
+                .unwrap_or_else(|| Textured::Value(named(default, span))),
+            ParameterKind::MetalAbsorption { default } => self
+                .spectrum_textured(parameter.name, Use::Absorption)
+                .unwrap_or_else(|| Textured::Value(named(default, span))),
             _ => Textured::Value(constant(0.0, span)),
         }
     }
@@ -202,6 +239,13 @@ impl ParamReader<'_> {
 fn constant(value: f64, span: Span) -> SpectrumDesc {
     SpectrumDesc {
         value: SpectrumValue::Constant(value as f32),
+        span,
+    }
+}
+
+fn named(name: &str, span: Span) -> SpectrumDesc {
+    SpectrumDesc {
+        value: SpectrumValue::Named(name.to_owned()),
         span,
     }
 }

@@ -138,7 +138,10 @@ pub(super) fn default_material(span: Span) -> MaterialDesc {
     });
     MaterialDesc {
         name: None,
-        kind: MaterialKind::Diffuse { reflectance },
+        kind: MaterialKind::Diffuse {
+            reflectance,
+            roughness: Textured::Value(0.0),
+        },
         span,
     }
 }

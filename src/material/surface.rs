@@ -1,0 +1,314 @@
+//! Materials as a scene has them: textures, from which each surface point gets the lobe there.
+
+use std::sync::Arc;
+
+use super::{
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
+    Principled, PrincipledParameters, PrincipledTables, Roughness, ThinDielectric,
+};
+use crate::geometry::SurfaceInteraction;
+use crate::math::Frame;
+use crate::sampling::hash::{hash_u32s, unit_f32};
+use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+use crate::texture::{FloatTexture, SpectrumTexture};
+
+/// The material of a surface.
+#[derive(Clone, Debug)]
+pub enum Material {
+    /// Diffuse reflection on both sides.
+    Diffuse {
+        /// Albedo, in [0, 1].
+        reflectance: SpectrumTexture,
+        /// Of [`OrenNayar`]; 0 is Lambertian.
+        roughness: FloatTexture,
+    },
+    /// Lambertian reflection and transmission.
+    DiffuseTransmission {
+        /// What is reflected.
+        reflectance: SpectrumTexture,
+        /// What is transmitted.
+        transmittance: SpectrumTexture,
+        /// A factor of both; they are kept in [0, 1].
+        scale: f32,
+    },
+    /// A metal, smooth or rough, on both sides.
+    Conductor {
+        /// What it reflects.
+        ior: ConductorIor,
+        /// How rough it is.
+        roughness: Roughness,
+        /// Whether light goes on from facet to facet.
+        multiple_scattering: bool,
+    },
+    /// The boundary of a transparent body, smooth or rough.
+    Dielectric {
+        /// Index of refraction inside over that outside.
+        eta: CompiledSpectrum,
+        /// How rough it is.
+        roughness: Roughness,
+        /// Whether light goes on from facet to facet.
+        multiple_scattering: bool,
+    },
+    /// A thin sheet.
+    ThinDielectric {
+        /// Index of refraction over that of both sides.
+        eta: CompiledSpectrum,
+    },
+    /// A Lambertian surface under a coat.
+    CoatedDiffuse {
+        /// Its albedo.
+        reflectance: SpectrumTexture,
+        /// The coat.
+        coat: Arc<Coat>,
+    },
+    /// A metal under a coat.
+    CoatedConductor {
+        /// Indices of the metal, relative to vacuum.
+        ior: ConductorIor,
+        /// How rough the metal is.
+        roughness: Roughness,
+        /// The coat.
+        coat: Arc<Coat>,
+    },
+    /// One of two materials, from point to point.
+    Mix(Arc<MixMaterial>),
+    /// By the parameters of artists.
+    Principled(Arc<PrincipledMaterial>),
+}
+
+/// A dielectric coat and what is under it.
+#[derive(Clone, Debug)]
+pub struct Coat {
+    /// Index of refraction over that of the outside.
+    pub eta: CompiledSpectrum,
+    /// How rough it is.
+    pub roughness: Roughness,
+    /// See [`Interlayer`].
+    pub thickness: FloatTexture,
+    /// See [`Interlayer`].
+    pub albedo: SpectrumTexture,
+    /// See [`Interlayer`].
+    pub g: FloatTexture,
+    /// See [`Interlayer`].
+    pub max_depth: u32,
+    /// See [`Interlayer`].
+    pub samples: u32,
+}
+
+/// Two materials of which each point has one: pbrt-v4's mix. The choice is a hash of the position, so that all that is asked of a
+/// point gets the same answer.
+#[derive(Clone, Debug)]
+pub struct MixMaterial {
+    /// The two.
+    pub materials: [Material; 2],
+    /// The probability of the second.
+    pub amount: FloatTexture,
+}
+
+/// The textures of [`PrincipledParameters`].
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "see the description")]
+pub struct PrincipledMaterial {
+    pub base: SpectrumTexture,
+    pub roughness: FloatTexture,
+    pub anisotropic: FloatTexture,
+    pub metallic: FloatTexture,
+    pub spec_trans: FloatTexture,
+    pub eta: f32,
+    pub spec_tint: FloatTexture,
+    pub sheen: FloatTexture,
+    pub sheen_tint: FloatTexture,
+    pub clearcoat: FloatTexture,
+    pub clearcoat_gloss: FloatTexture,
+    pub tables: PrincipledTables,
+}
+
+/// How the complex index of refraction of a conductor is given.
+#[derive(Clone, Debug)]
+pub enum ConductorIor {
+    /// n + i k.
+    Measured {
+        /// n.
+        eta: SpectrumTexture,
+        /// k.
+        k: SpectrumTexture,
+    },
+    /// The reflectance at normal incidence, from which n = 1 and k follow, as in pbrt-v4.
+    Reflectance(SpectrumTexture),
+}
+
+impl Material {
+    /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
+    #[inline]
+    pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
+        let (lobe, is_anisotropic) = self.lobe(si, lambda);
+        let frame = if is_anisotropic {
+            Frame::from_normal_tangent(si.ns, si.dpdu)
+        } else {
+            Frame::from_normal(si.ns)
+        };
+        Bsdf::new(frame, lobe)
+    }
+
+    /// The lobe, and whether it matters which way the tangent points.
+    #[inline]
+    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+        match self {
+            Self::Diffuse { reflectance, roughness } => {
+                let albedo = reflectance.reflectance_at(si, lambda);
+                let roughness = roughness.at(si);
+                let lobe = if roughness > 0.0 {
+                    Lobe::OrenNayar(OrenNayar::new(albedo, roughness.min(1.0)))
+                } else {
+                    Lobe::Diffuse(Diffuse::new(albedo))
+                };
+                (lobe, false)
+            }
+            _ => self.other_lobe(si, lambda),
+        }
+    }
+
+    /// All but the commonest.
+    fn other_lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+        match self {
+            Self::Diffuse { .. } => self.lobe(si, lambda),
+            Self::DiffuseTransmission {
+                reflectance,
+                transmittance,
+                scale,
+            } => {
+                let [r, t] = [reflectance, transmittance].map(|part| {
+                    let value = part.reflectance_at(si, lambda) * *scale;
+                    value.map(|v| v.min(1.0))
+                });
+                (Lobe::DiffuseTransmission(DiffuseTransmission::new(r, t)), false)
+            }
+            Self::Conductor {
+                ior,
+                roughness,
+                multiple_scattering,
+            } => {
+                let ((eta, k), facets) = (ior.at(si, lambda), roughness.at(si));
+                let lobe = Conductor::new(eta, k, facets).with_multiple_scattering(*multiple_scattering);
+                (Lobe::Conductor(lobe), is_anisotropic(facets))
+            }
+            Self::Dielectric {
+                eta,
+                roughness,
+                multiple_scattering,
+            } => {
+                let facets = roughness.at(si);
+                let lobe = Dielectric::new(hero_index(eta, lambda), facets);
+                let lobe = lobe.with_multiple_scattering(*multiple_scattering);
+                (Lobe::Dielectric(lobe), is_anisotropic(facets))
+            }
+            Self::ThinDielectric { eta } => (Lobe::ThinDielectric(ThinDielectric::new(eta.sample(lambda))), false),
+            Self::CoatedDiffuse { reflectance, coat } => {
+                let (boundary, anisotropic) = coat.boundary(si, lambda);
+                let body = Body::Diffuse(Diffuse::new(reflectance.reflectance_at(si, lambda)));
+                (
+                    Lobe::Layered(Layered::new(boundary, body, coat.interlayer(si, lambda))),
+                    anisotropic,
+                )
+            }
+            Self::CoatedConductor { ior, roughness, coat } => {
+                let (boundary, coat_is_anisotropic) = coat.boundary(si, lambda);
+                let facets = roughness.at(si);
+                let (eta, k) = ior.at(si, lambda);
+                let inside = 1.0 / boundary.eta();
+                let body = Body::Conductor(Conductor::new(eta * inside, k * inside, facets));
+                let lobe = Layered::new(boundary, body, coat.interlayer(si, lambda));
+                (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
+            }
+            Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            Self::Principled(material) => {
+                let p = material.at(si, lambda);
+                let lobe = Principled::new(p, &material.tables);
+                (Lobe::Principled(lobe), p.anisotropic > 0.0)
+            }
+        }
+    }
+
+    /// The material that a mix is at a point, which is no mix.
+    fn chosen(&self, si: &SurfaceInteraction) -> &Self {
+        let mut material = self;
+        let mut u = unit_f32((hash_u32s(&si.p.to_array().map(f32::to_bits)) >> 32) as u32);
+        while let Self::Mix(mix) = material {
+            let amount = mix.amount.at(si);
+            // What is left of the number is uniform again, for mixes of mixes.
+            if u < amount {
+                material = &mix.materials[1];
+                u /= amount;
+            } else {
+                material = &mix.materials[0];
+                u = (u - amount) / (1.0 - amount);
+            }
+        }
+        material
+    }
+}
+
+fn is_anisotropic(facets: Option<Microfacets>) -> bool {
+    facets.is_some_and(|facets| !facets.is_isotropic())
+}
+
+/// An index of refraction; one that varies ends the secondary wavelengths.
+fn hero_index(eta: &CompiledSpectrum, lambda: &mut Wavelengths) -> f32 {
+    if !eta.is_constant_over_wavelengths() {
+        lambda.terminate_secondary();
+    }
+    eta.sample(lambda).0[0]
+}
+
+impl Coat {
+    /// The coat's boundary, and whether its tangent matters.
+    fn boundary(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Dielectric, bool) {
+        let facets = self.roughness.at(si);
+        (
+            Dielectric::new(hero_index(&self.eta, lambda), facets),
+            is_anisotropic(facets),
+        )
+    }
+
+    fn interlayer(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> Interlayer {
+        Interlayer {
+            thickness: self.thickness.at(si).max(0.0),
+            albedo: self.albedo.reflectance_at(si, lambda),
+            g: self.g.at(si).clamp(-0.99, 0.99),
+            max_depth: self.max_depth,
+            samples: self.samples,
+        }
+    }
+}
+
+impl PrincipledMaterial {
+    fn at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> PrincipledParameters {
+        let unit = |texture: &FloatTexture| texture.at(si).clamp(0.0, 1.0);
+        PrincipledParameters {
+            base: self.base.reflectance_at(si, lambda),
+            roughness: unit(&self.roughness),
+            anisotropic: unit(&self.anisotropic),
+            metallic: unit(&self.metallic),
+            spec_trans: unit(&self.spec_trans),
+            eta: self.eta,
+            spec_tint: unit(&self.spec_tint),
+            sheen: unit(&self.sheen),
+            sheen_tint: unit(&self.sheen_tint),
+            clearcoat: unit(&self.clearcoat),
+            clearcoat_gloss: unit(&self.clearcoat_gloss),
+        }
+    }
+}
+
+impl ConductorIor {
+    fn at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> (SampledSpectrum, SampledSpectrum) {
+        match self {
+            Self::Measured { eta, k } => (eta.at(si, lambda), k.at(si, lambda)),
+            Self::Reflectance(r) => {
+                // With n = 1, R = k² / (4 + k²) at normal incidence.
+                let r = r.at(si, lambda).map(|r| r.clamp(0.0, 0.9999));
+                (SampledSpectrum::ONE, r.map(|r| 2.0 * (r / (1.0 - r)).sqrt()))
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The lobes with exact densities, and what each one's model says that it reflects and transmits.
+
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+use glam::{DVec3, Vec3};
+use lucerna::material::Distribution::{self, Beckmann, Ggx};
+use lucerna::material::{
+    Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Lobe, Microfacets, OrenNayar, Principled,
+    PrincipledParameters, PrincipledTables, TransportMode,
+};
+use lucerna::math::Frame;
+use lucerna::spectrum::SampledSpectrum;
+
+use super::common::grooves::Grooves;
+use super::common::microfacet::{Shape, Slopes, conductor_reflectance, dielectric_reflectance, direction};
+
+/// What is tested, with what the model is made of.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Diffuse,
+    /// Roughness.
+    OrenNayar(f32),
+    /// Reflectance and transmittance.
+    Paper(f32, f32),
+    /// Slopes.
+    Metal(Distribution, f32, f32),
+    /// Index and slopes.
+    Glass(Distribution, f32, f32, f32),
+    Principled(&'static PrincipledParameters),
+}
+
+const METAL_N: f64 = 0.2;
+const METAL_K: f64 = 3.9;
+const ALBEDO: f32 = 0.7;
+
+impl Kind {
+    /// The BSDF where the normal is +z and the tangent +x.
+    pub fn bsdf(self) -> Bsdf<'static> {
+        self.bsdf_in(Vec3::Z, Vec3::X)
+    }
+
+    /// The BSDF for a normal and a derivative of the position, which need not be perpendicular or of unit length.
+    pub fn bsdf_in(self, ns: Vec3, dpdu: Vec3) -> Bsdf<'static> {
+        let splat = SampledSpectrum::splat;
+        let lobe = match self {
+            Self::Diffuse => Lobe::Diffuse(Diffuse::new(splat(ALBEDO))),
+            Self::OrenNayar(roughness) => Lobe::OrenNayar(OrenNayar::new(splat(ALBEDO), roughness)),
+            Self::Paper(r, t) => Lobe::DiffuseTransmission(DiffuseTransmission::new(splat(r), splat(t))),
+            Self::Metal(distribution, x, y) => Lobe::Conductor(Conductor::new(
+                splat(METAL_N as f32),
+                splat(METAL_K as f32),
+                Microfacets::new(distribution, x, y),
+            )),
+            Self::Glass(distribution, eta, x, y) => {
+                Lobe::Dielectric(Dielectric::new(eta, Microfacets::new(distribution, x, y)))
+            }
+            Self::Principled(parameters) => {
+                static TABLES: OnceLock<PrincipledTables> = OnceLock::new();
+                let tables = TABLES.get_or_init(|| PrincipledTables::new(parameters.eta));
+                Lobe::Principled(Principled::new(*parameters, tables))
+            }
+        };
+        Bsdf::new(Frame::from_normal_tangent(ns, dpdu), lobe)
+    }
+
+    /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
+    pub fn albedo(self, wo: DVec3, mode: TransportMode) -> f64 {
+        let up = DVec3::new(wo.x, wo.y, wo.z.abs());
+        let slopes = |distribution, x: f32, y: f32| {
+            let shape = match distribution {
+                Distribution::Ggx => Shape::Ggx,
+                Distribution::Beckmann => Shape::Beckmann,
+            };
+            Slopes(x.into(), y.into(), shape)
+        };
+        match self {
+            Self::Diffuse => ALBEDO.into(),
+            Self::OrenNayar(roughness) => Grooves(roughness.into()).albedo(up.z, ALBEDO.into()),
+            Self::Paper(r, t) => f64::from(r) + f64::from(t),
+            Self::Metal(distribution, x, y) => {
+                let fresnel = |cos| conductor_reflectance(cos, METAL_N, METAL_K);
+                slopes(distribution, x, y).reflected(up, fresnel)
+            }
+            Self::Glass(distribution, eta, x, y) => {
+                let eta = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
+                let slopes = slopes(distribution, x, y);
+                let scale = if mode == TransportMode::Radiance {
+                    1.0 / (eta * eta)
+                } else {
+                    1.0
+                };
+                let fresnel = |cos| dielectric_reflectance(cos, eta);
+                slopes.reflected(up, fresnel) + scale * slopes.transmitted(up, eta)
+            }
+            Self::Principled(_) => integral(&self.bsdf(), wo, mode),
+        }
+    }
+}
+
+pub const KINDS: [Kind; 22] = [
+    Kind::Diffuse,
+    Kind::OrenNayar(0.3),
+    Kind::OrenNayar(1.0),
+    Kind::Paper(0.5, 0.2),
+    Kind::Metal(Ggx, 0.1, 0.1),
+    Kind::Metal(Ggx, 0.4, 0.4),
+    Kind::Metal(Ggx, 1.0, 1.0),
+    Kind::Metal(Ggx, 0.15, 0.5),
+    Kind::Metal(Beckmann, 0.1, 0.1),
+    Kind::Metal(Beckmann, 0.8, 0.8),
+    Kind::Metal(Beckmann, 0.15, 0.5),
+    Kind::Glass(Ggx, 1.5, 0.1, 0.1),
+    Kind::Glass(Ggx, 1.5, 0.5, 0.5),
+    Kind::Glass(Ggx, 1.5, 0.2, 0.7),
+    Kind::Glass(Ggx, 0.75, 0.3, 0.3),
+    Kind::Glass(Ggx, 2.4, 0.9, 0.4),
+    Kind::Glass(Beckmann, 1.5, 0.2, 0.5),
+    Kind::Glass(Beckmann, 0.75, 0.4, 0.4),
+    Kind::Principled(&PLASTIC),
+    Kind::Principled(&METAL),
+    Kind::Principled(&GLASS),
+    Kind::Principled(&ALL),
+];
+
+const PLASTIC: PrincipledParameters = PrincipledParameters {
+    base: SampledSpectrum::splat(0.8),
+    roughness: 0.5,
+    anisotropic: 0.0,
+    metallic: 0.0,
+    spec_trans: 0.0,
+    eta: 1.5,
+    spec_tint: 0.0,
+    sheen: 0.0,
+    sheen_tint: 0.0,
+    clearcoat: 0.0,
+    clearcoat_gloss: 0.0,
+};
+const METAL: PrincipledParameters = PrincipledParameters {
+    metallic: 1.0,
+    anisotropic: 0.7,
+    clearcoat: 1.0,
+    clearcoat_gloss: 0.2,
+    ..PLASTIC
+};
+const GLASS: PrincipledParameters = PrincipledParameters {
+    spec_trans: 1.0,
+    roughness: 0.6,
+    ..PLASTIC
+};
+const ALL: PrincipledParameters = PrincipledParameters {
+    base: SampledSpectrum([1.0, 0.7, 0.3, 0.1]),
+    roughness: 0.7,
+    anisotropic: 0.3,
+    metallic: 0.3,
+    spec_trans: 0.4,
+    eta: 1.5,
+    spec_tint: 0.5,
+    sheen: 1.0,
+    sheen_tint: 0.5,
+    clearcoat: 0.8,
+    clearcoat_gloss: 0.1,
+};
+
+/// The cosine-weighted integral of f over all directions, by the midpoint rule in azimuth and the polar angle.
+fn integral(bsdf: &Bsdf<'_>, wo: DVec3, mode: TransportMode) -> f64 {
+    const STEPS: (usize, usize) = (1200, 600);
+    let mut sum = 0.0;
+    for i in 0..STEPS.0 {
+        let theta = PI * (i as f64 + 0.5) / STEPS.0 as f64;
+        for j in 0..STEPS.1 {
+            let phi = 360.0 * (j as f64 + 0.5) / STEPS.1 as f64;
+            let wi = direction(theta.to_degrees(), phi);
+            let f = f64::from(bsdf.f(wo.as_vec3(), wi.as_vec3(), mode).0[0]);
+            sum += f * wi.z.abs() * theta.sin();
+        }
+    }
+    sum * (PI / STEPS.0 as f64) * (2.0 * PI / STEPS.1 as f64)
+}
+
+/// Polar angle and azimuth of wo, in degrees, for both sides: from the normal to grazing.
+pub const DIRECTIONS: [(f64, f64); 6] = [
+    (0.0, 0.0),
+    (35.0, 70.0),
+    (65.0, 200.0),
+    (88.0, 20.0),
+    (140.0, 310.0),
+    (100.0, 45.0),
+];
