@@ -139,6 +139,7 @@ fn material_kind(material: &Material) -> &'static str {
         Material::CoatedConductor { .. } => "coatedconductor",
         Material::Mix(_) => "mix",
         Material::Principled(_) => "principled",
+        Material::Relief(relief) => material_kind(&relief.material),
     }
 }
 

@@ -34,8 +34,8 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 pub use crate::sampling::SamplerKind;
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, RoughnessDesc, SpectrumDesc,
-    SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
+    SpectrumDesc, SpectrumValue,
 };
 pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};

@@ -16,7 +16,9 @@ mod microfacet;
 mod multiscatter;
 mod oren_nayar;
 mod principled;
+mod relief;
 mod roughness;
+mod sides;
 mod surface;
 mod thin_dielectric;
 
@@ -30,6 +32,7 @@ pub use layered::{Body, Interlayer, Layered};
 pub use microfacet::{Distribution, Microfacets};
 pub use oren_nayar::OrenNayar;
 pub use principled::{Principled, PrincipledParameters, PrincipledTables};
+pub use relief::{Relief, ReliefMap};
 pub use roughness::Roughness;
 pub use surface::{Coat, ConductorIor, Material, MixMaterial, PrincipledMaterial};
 pub use thin_dielectric::ThinDielectric;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
-    Principled, PrincipledParameters, PrincipledTables, Roughness, ThinDielectric,
+    Principled, PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -74,6 +74,8 @@ pub enum Material {
     Mix(Arc<MixMaterial>),
     /// By the parameters of artists.
     Principled(Arc<PrincipledMaterial>),
+    /// Another material under a bump or normal map.
+    Relief(Arc<Relief>),
 }
 
 /// A dielectric coat and what is under it.
@@ -141,7 +143,14 @@ impl Material {
     /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
-        let (lobe, is_anisotropic) = self.lobe(si, lambda);
+        let material = match self {
+            Self::Mix(_) => self.chosen(si),
+            _ => self,
+        };
+        if let Self::Relief(relief) = material {
+            return relief.bsdf(si, lambda);
+        }
+        let (lobe, is_anisotropic) = material.lobe(si, lambda);
         let frame = if is_anisotropic {
             Frame::from_normal_tangent(si.ns, si.dpdu)
         } else {
@@ -221,6 +230,8 @@ impl Material {
                 (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
             }
             Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            // For those who want no more than the lobe: the normal has been bent before.
+            Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
                 let p = material.at(si, lambda);
                 let lobe = Principled::new(p, &material.tables);

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
-    ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, RoughnessDesc, SceneDesc,
-    SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+    ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, ReliefDesc,
+    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
 };
 use crate::error::Span;
-use crate::material::{Distribution, Roughness};
+use crate::material::{Distribution, ReliefMap, Roughness};
 use crate::math::DAffine3;
 use crate::spectrum::{CompiledSpectrum, RgbKind, RgbSampler};
 use crate::texture::{
@@ -61,6 +61,17 @@ impl<'a> TextureCompiler<'a> {
         match value {
             Textured::Value(desc) => self.compile(desc, usage).into(),
             Textured::Texture(id) => self.spectrum_texture(*id, usage),
+        }
+    }
+
+    /// What bends a surface's shading normals; `None` if nothing does.
+    pub fn relief(&mut self, desc: &ReliefDesc) -> Option<ReliefMap> {
+        match desc {
+            ReliefDesc::Displacement(id) => match self.float_texture(*id) {
+                FloatTexture::Constant(_) => None,
+                texture => Some(ReliefMap::Displacement(texture)),
+            },
+            ReliefDesc::Normals(id) => self.map(*id, Wrap::Repeat, false).map(ReliefMap::Normals),
         }
     }
 
@@ -242,6 +253,17 @@ impl<'a> TextureCompiler<'a> {
         }
     }
 
+    /// An image at all scales, made once. `None` if it has no colour, which the reader has seen to.
+    fn map(&mut self, id: ImageId, wrap: Wrap, grey: bool) -> Option<Arc<MipMap>> {
+        let key = (id, wrap, grey);
+        if let Some(map) = self.maps.get(&key) {
+            return Some(Arc::clone(map));
+        }
+        let map = Arc::new(MipMap::new(&self.images[id.0 as usize].image, wrap, grey)?);
+        self.maps.insert(key, Arc::clone(&map));
+        Some(map)
+    }
+
     /// `None` if the image has no colour, which the reader has seen to.
     fn image(&mut self, desc: &ImageMapDesc, space: &DAffine3, grey: bool) -> Option<ImageTexture> {
         let wrap = match desc.wrap {
@@ -250,16 +272,8 @@ impl<'a> TextureCompiler<'a> {
             WrapDesc::Clamp => Wrap::Clamp,
             WrapDesc::OctahedralSphere => Wrap::OctahedralSphere,
         };
-        let key = (desc.image, wrap, grey);
-        let image = match self.maps.get(&key) {
-            Some(map) => Arc::clone(map),
-            None => {
-                let map = MipMap::new(&self.images[desc.image.0 as usize].image, wrap, grey)?;
-                Arc::clone(self.maps.entry(key).or_insert(Arc::new(map)))
-            }
-        };
         Some(ImageTexture {
-            image,
+            image: self.map(desc.image, wrap, grey)?,
             mapping: mapping2(&desc.mapping, space),
             filter: match desc.filter {
                 ImageFilterDesc::Point => Filter::Point,

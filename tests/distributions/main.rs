@@ -5,9 +5,9 @@ mod common;
 
 mod bsdfs;
 mod cameras;
-mod light_samplers;
 mod energy;
 mod kinds;
+mod light_samplers;
 mod lights;
 
 use glam::Vec2;

@@ -6,9 +6,10 @@ use super::world::{Materials, default_material};
 use crate::desc::material_kinds as kinds;
 use crate::desc::{
     CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, Parameter,
-    PrincipledDesc, RoughnessDesc, Textured,
+    PrincipledDesc, ReliefDesc, RoughnessDesc, Textured,
 };
 use crate::error::Span;
+use crate::image_io::Encoding;
 
 const LATER: [&str; 3] = ["hair", "measured", "subsurface"];
 
@@ -40,11 +41,37 @@ pub(super) fn read(
         return unknown(reader, kind, span);
     };
     let kind = read_kind(&mut reader, materials, entry.name);
-    if kind.is_some() {
-        reader.unsupported(&["displacement", "normalmap"]);
-    }
+    let can_have_relief = entry
+        .parameters
+        .iter()
+        .any(|parameter| parameter.name == kinds::DISPLACEMENT.name);
+    let relief = if can_have_relief { relief(&mut reader) } else { None };
     reader.finish();
-    kind.map(|kind| MaterialDesc { name: None, kind, span })
+    kind.map(|kind| MaterialDesc {
+        name: None,
+        kind,
+        relief,
+        span,
+    })
+}
+
+/// A normal map or a displacement; as in pbrt-v4 the former counts if both are given.
+fn relief(reader: &mut ParamReader<'_>) -> Option<ReliefDesc> {
+    let displacement = match reader.float_textured(kinds::DISPLACEMENT.name) {
+        Some(Textured::Texture(id)) => Some(ReliefDesc::Displacement(id)),
+        // The same height everywhere bends nothing.
+        Some(Textured::Value(_)) | None => None,
+    };
+    if !reader.has(kinds::NORMAL_MAP.name) {
+        return displacement;
+    }
+    if displacement.is_some() {
+        let span = reader.span_of(kinds::DISPLACEMENT.name);
+        let message = "`displacement` has no effect: there is a normal map";
+        reader.report().warning(span, message);
+    }
+    let image = reader.image(kinds::NORMAL_MAP.name, Encoding::Linear)?;
+    Some(ReliefDesc::Normals(image))
 }
 
 fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<MaterialDesc> {

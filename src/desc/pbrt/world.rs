@@ -138,6 +138,7 @@ pub(super) fn default_material(span: Span) -> MaterialDesc {
     });
     MaterialDesc {
         name: None,
+        relief: None,
         kind: MaterialKind::Diffuse {
             reflectance,
             roughness: Textured::Value(0.0),
