@@ -91,3 +91,7 @@ fn slopes(height: &FloatTexture, si: &SurfaceInteraction) -> Vec2 {
     let along_v = height.evaluate(&context.moved(si.dpdv * dv, Vec2::new(0.0, dv)));
     Vec2::new((along_u - here) / du, (along_v - here) / dv)
 }
+
+#[cfg(test)]
+#[path = "relief_tests.rs"]
+mod tests;
