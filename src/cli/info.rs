@@ -136,6 +136,7 @@ fn material_kind(material: &Material) -> &'static str {
         Material::CoatedConductor { .. } => "coatedconductor",
         Material::Mix(_) => "mix",
         Material::Principled(_) => "principled",
+        Material::Measured(_) => "measured",
     }
 }
 

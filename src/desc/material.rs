@@ -1,6 +1,8 @@
 //! Materials and the spectra that they and the lights are given.
 
-use super::{MaterialId, Textured};
+use std::sync::Arc;
+
+use super::{MaterialId, MeasuredDesc, Textured};
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -82,6 +84,8 @@ pub enum MaterialKind {
     },
     /// A surface by the parameters of artists.
     Principled(PrincipledDesc),
+    /// A surface by measurements.
+    Measured(Arc<MeasuredDesc>),
 }
 
 /// A coat and what lies between it and the surface under it.

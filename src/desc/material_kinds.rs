@@ -14,7 +14,7 @@ pub struct MaterialEntry {
 }
 
 /// All kinds.
-pub static MATERIALS: [MaterialEntry; 10] = [
+pub static MATERIALS: [MaterialEntry; 11] = [
     MaterialEntry {
         name: "diffuse",
         doc: "Diffuse reflection on both sides",
@@ -121,6 +121,11 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &CLEARCOAT,
             &CLEARCOAT_GLOSS,
         ],
+    },
+    MaterialEntry {
+        name: "measured",
+        doc: "Reflection as measured, on both sides, from a file of RGL's database",
+        parameters: &[&MEASURED_FILE],
     },
     MaterialEntry {
         name: "interface",
@@ -313,3 +318,5 @@ pub(super) static SHEEN_TINT: Parameter =
 pub(super) static CLEARCOAT: Parameter = parameter("clearcoat", unit(0.0), "How much there is of a coat of lacquer");
 pub(super) static CLEARCOAT_GLOSS: Parameter =
     parameter("clearcoat_gloss", unit(0.0), "From a satin coat to a glossy one");
+
+pub(super) static MEASURED_FILE: Parameter = parameter("filename", ParameterKind::File, "A .bsdf file");

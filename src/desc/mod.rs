@@ -20,6 +20,7 @@ mod material_kinds;
 mod parameter;
 pub mod pbrt;
 pub mod ply;
+pub mod rgl;
 mod shape;
 mod texture;
 mod texture_kinds;
@@ -39,6 +40,7 @@ pub use material::{
 };
 pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
+pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{ClassedTexture, TextureClass, TextureDesc, TextureId, TextureKind, Textured};
 pub use texture_kinds::{TEXTURES, TextureEntry};

@@ -1,6 +1,8 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
-use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, Principled, ThinDielectric};
+use super::{
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
@@ -128,6 +130,7 @@ pub enum Lobe<'a> {
     ThinDielectric(ThinDielectric),
     Layered(Layered),
     Principled(Principled<'a>),
+    Measured(Measured<'a>),
 }
 
 /// The scattering function at a point of a surface for the wavelengths of a path.
@@ -152,7 +155,11 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Principled(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
@@ -177,7 +184,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
-            | Lobe::Principled(_) => false,
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
         }
     }
 
@@ -202,6 +210,7 @@ impl<'a> Bsdf<'a> {
             Lobe::ThinDielectric(_) => None,
             Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
             Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
+            Lobe::Measured(lobe) => lobe.eval(wo, wi),
             Lobe::Conductor(lobe) => lobe.eval(wo, wi),
             Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }?;
@@ -238,6 +247,7 @@ impl<'a> Bsdf<'a> {
             Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
             Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Lobe::Measured(lobe) => lobe.sample_f(wo, u),
             Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
             Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }?;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
-    Principled, PrincipledParameters, PrincipledTables, Roughness, ThinDielectric,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
+    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Roughness,
+    ThinDielectric,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -74,6 +75,8 @@ pub enum Material {
     Mix(Arc<MixMaterial>),
     /// By the parameters of artists.
     Principled(Arc<PrincipledMaterial>),
+    /// By measurements.
+    Measured(Arc<MeasuredTables>),
 }
 
 /// A dielectric coat and what is under it.
@@ -226,6 +229,7 @@ impl Material {
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
+            Self::Measured(tables) => (Lobe::Measured(Measured::new(tables, lambda)), true),
         }
     }
 

@@ -8,6 +8,7 @@ mod cameras;
 mod energy;
 mod kinds;
 mod lights;
+mod measured;
 
 use glam::Vec2;
 
