@@ -87,7 +87,7 @@ fn points_on_an_inward_sphere_light_sample_all_of_it() {
     for _ in 0..1000 {
         let [a, b, c, d] = random.unit4();
         let on_sphere = center + 2.0 * warp::sample_uniform_sphere(Vec2::new(a, b)).as_dvec3().normalize();
-        let sample = light.sample_li(on_sphere.as_vec3(), Vec2::new(c, d), &Wavelengths::rgb());
+        let sample = light.sample_li(on_sphere.as_vec3(), 0.0, Vec2::new(c, d), &Wavelengths::rgb());
         assert!(sample.is_some(), "from {on_sphere}");
     }
 }

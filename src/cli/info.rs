@@ -120,6 +120,9 @@ fn light_kind(light: &Light) -> &'static str {
     match light {
         Light::Area(_) => "area",
         Light::Point(_) => "point",
+        Light::Spot(_) => "spot",
+        Light::Goniometric(_) => "goniometric",
+        Light::Projection(_) => "projection",
         Light::Distant(_) => "distant",
         Light::Environment(_) => "infinite",
     }

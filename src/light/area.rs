@@ -2,9 +2,9 @@
 
 use std::f32::consts::PI;
 
-use super::{LightDensity, LightEnd, LightSample};
+use super::{LightBounds, LightDensity, LightEnd, LightSample};
 use crate::geometry::{LEAST_ERROR, triangle_error};
-use crate::math::{DVec3, Frame, Vec2, Vec3, gamma};
+use crate::math::{Bounds3, DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
@@ -158,6 +158,28 @@ impl AreaLight {
             error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
             ng,
             pdf,
+        }
+    }
+
+    pub(super) fn bounds(&self) -> LightBounds {
+        let radiance = self.radiance.photometric_luminance();
+        match &self.shape {
+            EmitterShape::Triangle { vertices, ng } => LightBounds {
+                bounds: Bounds3::from_points(*vertices),
+                axis: *ng,
+                cos_normals: 1.0,
+                cos_emission: 0.0,
+                intensity: radiance * self.area,
+                two_sided: self.two_sided,
+            },
+            // Of a sphere no more than half is seen from outside, and all of its area faces a point inside.
+            EmitterShape::Sphere { center, radius, .. } => {
+                let (center, radius) = (center.as_vec3(), *radius as f32);
+                LightBounds::omnidirectional(
+                    Bounds3::from_points([center]).expand(radius),
+                    radiance * PI * radius * radius,
+                )
+            }
         }
     }
 

@@ -2,36 +2,55 @@
 
 use std::f32::consts::PI;
 
-use super::{LightDensity, LightEnd, LightSample};
+use super::{LightBounds, LightDensity, LightEnd, LightSample, Place};
 use crate::math::{Bounds3, Vec3};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
 /// The same intensity in all directions from a point.
 #[derive(Clone, Debug)]
 pub struct PointLight {
-    position: Vec3,
+    place: Place,
     intensity: CompiledSpectrum,
 }
 
+/// What comes to `p` from a light at the point `position` with an intensity by direction from it (of unit length).
+#[inline]
+pub(super) fn towards_point(
+    p: Vec3,
+    position: Vec3,
+    intensity: impl Fn(Vec3) -> SampledSpectrum,
+) -> Option<LightSample> {
+    let to_light = position - p;
+    let distance_squared = to_light.length_squared();
+    if distance_squared <= 0.0 {
+        return None;
+    }
+    let wi = to_light / distance_squared.sqrt();
+    let li = intensity(-wi) * (1.0 / distance_squared);
+    (!li.is_black()).then_some(LightSample {
+        li,
+        wi,
+        end: LightEnd::Point {
+            p: position,
+            error: 0.0,
+            ng: Vec3::ZERO,
+        },
+        density: LightDensity::Delta,
+    })
+}
+
 impl PointLight {
-    /// At `position`, with `intensity` in W·sr⁻¹·nm⁻¹.
-    pub fn new(position: Vec3, intensity: CompiledSpectrum) -> Self {
-        Self { position, intensity }
+    /// At the origin of `place`, with `intensity` in W·sr⁻¹·nm⁻¹.
+    pub fn new(place: Place, intensity: CompiledSpectrum) -> Self {
+        Self { place, intensity }
     }
 
-    pub(super) fn sample_li(&self, p: Vec3, lambda: &Wavelengths) -> Option<LightSample> {
-        let to_light = self.position - p;
-        let distance_squared = to_light.length_squared();
-        (distance_squared > 0.0).then(|| LightSample {
-            li: self.intensity.sample(lambda) * (1.0 / distance_squared),
-            wi: to_light / distance_squared.sqrt(),
-            end: LightEnd::Point {
-                p: self.position,
-                error: 0.0,
-                ng: Vec3::ZERO,
-            },
-            density: LightDensity::Delta,
-        })
+    pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
+        towards_point(p, self.place.at(time).position, |_| self.intensity.sample(lambda))
+    }
+
+    pub(super) fn bounds(&self) -> LightBounds {
+        LightBounds::omnidirectional(self.place.bounds(), self.intensity.photometric_luminance())
     }
 
     pub(super) fn power(&self) -> f32 {
@@ -42,22 +61,20 @@ impl PointLight {
 /// Parallel light from infinitely far away.
 #[derive(Clone, Debug)]
 pub struct DistantLight {
-    /// Unit direction towards the light.
-    towards: Vec3,
+    place: Place,
     irradiance: CompiledSpectrum,
 }
 
 impl DistantLight {
-    /// From the unit direction `towards`, giving `irradiance` (W·m⁻²·nm⁻¹) to a surface that faces it.
-    pub fn new(towards: Vec3, irradiance: CompiledSpectrum) -> Self {
-        Self { towards, irradiance }
+    /// From the direction +z of `place`, giving `irradiance` (W·m⁻²·nm⁻¹) to a surface that faces it.
+    pub fn new(place: Place, irradiance: CompiledSpectrum) -> Self {
+        Self { place, irradiance }
     }
 
-    pub(super) fn sample_li(&self, lambda: &Wavelengths) -> LightSample {
-        let li: SampledSpectrum = self.irradiance.sample(lambda);
+    pub(super) fn sample_li(&self, time: f32, lambda: &Wavelengths) -> LightSample {
         LightSample {
-            li,
-            wi: self.towards,
+            li: self.irradiance.sample(lambda),
+            wi: self.place.at(time).axis(),
             end: LightEnd::Infinity,
             density: LightDensity::Delta,
         }

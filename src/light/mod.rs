@@ -1,14 +1,31 @@
 //! Lights: what they emit, and how a direction towards one is sampled. Each kind is a file.
 
 mod area;
+mod bounds;
+mod bvh;
 mod delta;
 mod environment;
+mod goniometric;
+mod image;
+mod place;
+mod portal;
+mod projection;
 mod sampler;
+mod sky;
+mod spot;
 
 pub use area::{AreaLight, EmitterShape};
+pub use bounds::LightBounds;
 pub use delta::{DistantLight, PointLight};
 pub use environment::EnvironmentLight;
+pub use goniometric::GoniometricLight;
+pub use image::EmissionImage;
+pub use place::{Place, facing};
+pub use portal::{Behind, Portal, PortalEnvironment};
+pub use projection::ProjectionLight;
 pub use sampler::{LightSampler, SampledLight};
+pub use sky::ImageEnvironment;
+pub use spot::SpotLight;
 
 use crate::geometry::SurfaceInteraction;
 use crate::math::{Bounds3, Vec2, Vec3};
@@ -34,6 +51,12 @@ pub enum Light {
     Area(AreaLight),
     /// A point.
     Point(PointLight),
+    /// A cone from a point.
+    Spot(SpotLight),
+    /// A point with an image of intensities.
+    Goniometric(GoniometricLight),
+    /// A picture thrown from a point.
+    Projection(ProjectionLight),
     /// A direction.
     Distant(DistantLight),
     /// All around the scene.
@@ -79,14 +102,17 @@ pub struct LightSample {
 }
 
 impl Light {
-    /// Samples a direction from the point `p` towards the light. `None` carries nothing.
+    /// Samples a direction from the point `p` at `time` towards the light. `None` carries nothing.
     #[inline]
-    pub fn sample_li(&self, p: Vec3, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
+    pub fn sample_li(&self, p: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
         match self {
             Self::Area(light) => light.sample_li(p, u, lambda),
-            Self::Point(light) => light.sample_li(p, lambda),
-            Self::Distant(light) => Some(light.sample_li(lambda)),
-            Self::Environment(light) => Some(light.sample_li(u, lambda)),
+            Self::Point(light) => light.sample_li(p, time, lambda),
+            Self::Spot(light) => light.sample_li(p, time, lambda),
+            Self::Goniometric(light) => light.sample_li(p, time, lambda),
+            Self::Projection(light) => light.sample_li(p, time, lambda),
+            Self::Distant(light) => Some(light.sample_li(time, lambda)),
+            Self::Environment(light) => light.sample_li(p, time, u, lambda),
         }
     }
 
@@ -95,7 +121,7 @@ impl Light {
     pub fn le(&self, si: &SurfaceInteraction, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
         match self {
             Self::Area(light) => light.le(si.ng, w, lambda),
-            Self::Point(_) | Self::Distant(_) | Self::Environment(_) => SampledSpectrum::ZERO,
+            _ => SampledSpectrum::ZERO,
         }
     }
 
@@ -104,7 +130,27 @@ impl Light {
     pub fn pdf_li(&self, p: Vec3, si: &SurfaceInteraction) -> SolidAnglePdf {
         match self {
             Self::Area(light) => light.pdf_li(p, si.p, si.ng),
-            Self::Point(_) | Self::Distant(_) | Self::Environment(_) => SolidAnglePdf(0.0),
+            _ => SolidAnglePdf(0.0),
+        }
+    }
+
+    /// Whether only [`Light::sample_li`] finds it, and in one direction from each point.
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::Area(_) | Self::Environment(_) => false,
+            Self::Point(_) | Self::Spot(_) | Self::Goniometric(_) | Self::Projection(_) | Self::Distant(_) => true,
+        }
+    }
+
+    /// Where and where to it emits, for a hierarchy over lights; `None` if it is infinitely far away.
+    pub fn bounds(&self) -> Option<LightBounds> {
+        match self {
+            Self::Area(light) => Some(light.bounds()),
+            Self::Point(light) => Some(light.bounds()),
+            Self::Spot(light) => Some(light.bounds()),
+            Self::Goniometric(light) => Some(light.bounds()),
+            Self::Projection(light) => Some(light.bounds()),
+            Self::Distant(_) | Self::Environment(_) => None,
         }
     }
 
@@ -113,6 +159,9 @@ impl Light {
         match self {
             Self::Area(light) => light.power(),
             Self::Point(light) => light.power(),
+            Self::Spot(light) => light.power(),
+            Self::Goniometric(light) => light.power(),
+            Self::Projection(light) => light.power(),
             Self::Distant(light) => light.power(bounds),
             Self::Environment(light) => light.power(bounds),
         }

@@ -167,10 +167,26 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Whether [`Bsdf::sample_f`] looks at `u_lobe`.
+    /// The frame of the shading normal.
     #[inline]
-    pub fn has_several_lobes(&self) -> bool {
-        !matches!(self.lobe, Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_))
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Whether directions on the other side of the surface than `wo` may carry light, by other than delta lobes.
+    pub fn transmits(&self) -> bool {
+        match &self.lobe {
+            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) => false,
+            Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => true,
+        }
+    }
+
+    /// Whether it has delta lobes, perhaps beside others.
+    pub fn has_delta(&self) -> bool {
+        match &self.lobe {
+            Lobe::Layered(lobe) => lobe.has_delta(),
+            _ => self.is_delta(),
+        }
     }
 
     /// Whether `f` is an estimate that only its mean over neighbouring directions makes right, and `pdf` only a likeness of the

@@ -103,6 +103,11 @@ impl Layered {
         self.coat.is_delta() && self.body.is_delta() && self.interlayer.albedo.is_black()
     }
 
+    /// Whether light is reflected by a smooth coat.
+    pub fn has_delta(&self) -> bool {
+        self.coat.is_delta()
+    }
+
     /// See [`Bsdf::eval`](super::Bsdf::eval).
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<LocalValue> {
         if wo.z * wi.z <= 0.0 || self.is_delta() {

@@ -1,17 +1,23 @@
 //! Random numbers and what is made of them: samplers, warps, discrete distributions, densities and their measures.
 
+mod cells;
 pub mod distribution;
 pub mod hash;
 mod measure;
 pub mod mis;
 mod sampler;
 mod sobol;
+mod sphere_map;
 pub mod warp;
+mod windowed;
 
+pub use cells::{Cell, CellDistribution};
 pub use distribution::{AliasTable, PiecewiseConstant1D};
 pub use measure::{AreaPdf, SolidAnglePdf};
 pub use mis::{balance_heuristic, power_heuristic};
 pub use sampler::{SampleStream, Sampler, SamplerKind};
+pub use sphere_map::SphereMap;
+pub use windowed::WindowedDistribution;
 
 /// The largest number below one.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+pub(crate) const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;

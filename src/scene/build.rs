@@ -9,10 +9,12 @@ use super::spectra::SpectrumCompiler;
 use super::textures::TextureCompiler;
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
-use crate::desc::{AreaLightDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
+use crate::desc::{AreaLightDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Shape, TriangleMesh, WorldBuilder};
-use crate::light::{AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, PointLight};
+use crate::light::{
+    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightId, LightSampler, Place, PointLight,
+};
 use crate::math::DVec3;
 
 /// What is collected while shapes and lights are gone through.
@@ -54,12 +56,10 @@ impl Scene {
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
-        let light_sampler = match desc.integrator {
-            IntegratorDesc::Path {
-                light_sampler: LightSamplerKind::Uniform,
-                ..
-            } => LightSampler::uniform(&builder.lights),
-            IntegratorDesc::Path { .. } => LightSampler::power(&builder.lights, &bounds),
+        let light_sampler = match desc.integrator.light_sampler {
+            LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
+            LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
+            LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),
         };
         Ok(Self {
             world,
@@ -203,15 +203,21 @@ impl SceneBuilder<'_> {
         let light = match desc.kind {
             LightKind::Point { from } => {
                 let position = world_from_light.transform_point3(from).as_vec3();
-                Light::Point(PointLight::new(position, spectrum.scaled(scale(4.0 * pi))))
+                Light::Point(PointLight::new(
+                    Place::at_point(position),
+                    spectrum.scaled(scale(4.0 * pi)),
+                ))
             }
             LightKind::Distant { from, to } => {
-                let towards = world_from_light.transform_vector3(from - to).normalize().as_vec3();
-                Light::Distant(DistantLight::new(towards, spectrum.scaled(scale(1.0))))
+                let towards = world_from_light.transform_vector3(from - to).normalize();
+                Light::Distant(DistantLight::new(
+                    Place::facing(DVec3::ZERO, towards),
+                    spectrum.scaled(scale(1.0)),
+                ))
             }
             LightKind::Infinite => {
                 self.environments.push(LightId(self.lights.len() as u32));
-                Light::Environment(EnvironmentLight::new(spectrum.scaled(scale(pi))))
+                Light::Environment(EnvironmentLight::Constant(spectrum.scaled(scale(pi))))
             }
         };
         self.lights.push(light);

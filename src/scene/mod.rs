@@ -118,7 +118,7 @@ impl Scene {
     pub fn environments(&self) -> impl Iterator<Item = (LightId, &EnvironmentLight)> {
         self.environments.iter().filter_map(|&id| match self.light(id) {
             Light::Environment(light) => Some((id, light)),
-            Light::Area(_) | Light::Point(_) | Light::Distant(_) => None,
+            _ => None,
         })
     }
 

@@ -21,6 +21,17 @@ const HALF_RANGE: f32 = 235.0;
 pub(super) struct SigmoidPolynomial([f32; 3]);
 
 impl SigmoidPolynomial {
+    /// The polynomial's coefficients, that of the square first.
+    pub fn coefficients(&self) -> [f32; 3] {
+        self.0
+    }
+
+    /// The inverse of [`Self::coefficients`].
+    #[inline]
+    pub fn from_coefficients(coefficients: [f32; 3]) -> Self {
+        Self(coefficients)
+    }
+
     /// The value at `lambda` nm.
     #[inline]
     pub fn at(&self, lambda: f32) -> f32 {

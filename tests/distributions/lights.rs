@@ -1,11 +1,10 @@
-//! Lights: sampled directions against their density, the solid angle and the power that they add up to; the choice of a light.
+//! Lights: sampled directions against their density, the solid angle and the power that they add up to.
 
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2, Vec3};
 use lucerna::light::{
-    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightDensity, LightEnd, LightId, LightSampler,
-    PointLight,
+    AreaLight, DistantLight, EmitterShape, EnvironmentLight, Light, LightDensity, LightEnd, PointLight,
 };
 use lucerna::math::Bounds3;
 use lucerna::sampling::warp;
@@ -265,44 +264,4 @@ fn power_is_the_flux_through_a_sphere_around_it() {
         report.assert_agrees(name);
         report.assert_power(name, 0.05, 0.05);
     }
-}
-
-#[test]
-fn lights_are_chosen_with_their_probability() {
-    let lights: Vec<Light> = [0.5, 0.0, 3.0, 1.0, 0.01]
-        .into_iter()
-        .map(|l| Light::Point(PointLight::new(Vec3::ZERO, constant(l))))
-        .collect();
-    let bounds = Bounds3 {
-        min: Vec3::splat(-1.0),
-        max: Vec3::splat(1.0),
-    };
-    let total = 4.51;
-    for (name, sampler, expected) in [
-        ("uniform", LightSampler::uniform(&lights), [0.2; 5]),
-        (
-            "power",
-            LightSampler::power(&lights, &bounds),
-            [0.5, 0.0, 3.0, 1.0, 0.01].map(|l| l / total),
-        ),
-    ] {
-        for (i, expected) in expected.into_iter().enumerate() {
-            let pmf = f64::from(sampler.pmf(LightId(i as u32)));
-            assert!((pmf - expected).abs() < 1e-6, "{name}, light {i}: {pmf}");
-        }
-        let test = Chi2 {
-            bins: [5, 1],
-            ..Chi2::new([[0.0, 5.0], [0.0, 1.0]]).of(2)
-        };
-        let report = test.run(
-            |u| {
-                let chosen = sampler.sample(u[0])?;
-                assert_eq!(chosen.pmf, sampler.pmf(chosen.light), "{name}");
-                Some([f64::from(chosen.light.0) + 0.5, 0.5])
-            },
-            |[at, _]| f64::from(sampler.pmf(LightId(at as u32))),
-        );
-        report.assert_ok(name);
-    }
-    assert!(LightSampler::uniform(&[]).sample(0.5).is_none());
 }

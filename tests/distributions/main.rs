@@ -7,6 +7,7 @@ mod bsdfs;
 mod cameras;
 mod energy;
 mod kinds;
+mod light_samplers;
 mod lights;
 mod measured;
 

@@ -13,6 +13,7 @@ mod files;
 mod film;
 mod finish;
 mod input;
+mod integrator;
 mod light;
 mod material;
 mod options;

@@ -9,6 +9,7 @@ use super::BELOW_ONE;
 
 mod direction;
 mod interval;
+mod octahedral;
 mod plane;
 
 pub use direction::{
@@ -17,6 +18,7 @@ pub use direction::{
     sample_uniform_sphere, uniform_cone_pdf, uniform_hemisphere_pdf, uniform_sphere_pdf,
 };
 pub use interval::{invert_linear, invert_tent, linear_pdf, sample_linear, sample_tent, tent_pdf};
+pub use octahedral::{equal_area_square_to_sphere, invert_equal_area_square_to_sphere};
 pub use plane::{
     invert_uniform_disk, invert_uniform_triangle, sample_uniform_disk, sample_uniform_triangle, uniform_disk_pdf,
     uniform_triangle_pdf,
