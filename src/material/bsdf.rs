@@ -176,7 +176,7 @@ impl<'a> Bsdf<'a> {
     /// Whether directions on the other side of the surface than `wo` may carry light, by other than delta lobes.
     pub fn transmits(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) => false,
+            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => false,
             Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => true,
         }
     }
