@@ -4,6 +4,8 @@
 mod bad_input;
 #[path = "desc/files.rs"]
 mod files;
+#[path = "desc/materials.rs"]
+mod materials;
 #[path = "desc/mutations.rs"]
 mod mutations;
 #[path = "desc/options.rs"]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::accel::{Backend, BuildQuality};
+use crate::desc::Strategy;
 use crate::film::PixelRect;
 use crate::sampling::SamplerKind;
 use crate::spectrum::ColorMode;
@@ -69,9 +70,13 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 
-    /// How light transport is estimated [default: the scene's] [possible values: path]
+    /// How light transport is estimated [default: the scene's] [possible values: path, kajiya]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
+
+    /// How `path` looks for light: by directions drawn from BSDFs, by points of lights, or by both [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub strategy: Option<StrategyArg>,
 
     /// Samples a pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -190,6 +195,27 @@ pub struct CompareArgs {
 /// `--max-depth`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MaxDepth(pub Option<u32>);
+
+/// `--strategy`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum StrategyArg {
+    /// Directions drawn from BSDFs: lights without extent are not found
+    Bsdf,
+    /// Points of lights, but where a path is specular
+    Light,
+    /// Both, by multiple importance sampling
+    Mis,
+}
+
+impl From<StrategyArg> for Strategy {
+    fn from(arg: StrategyArg) -> Self {
+        match arg {
+            StrategyArg::Bsdf => Self::Bsdf,
+            StrategyArg::Light => Self::Light,
+            StrategyArg::Mis => Self::Mis,
+        }
+    }
+}
 
 /// `--sampler`.
 #[derive(Clone, Copy, Debug, ValueEnum)]

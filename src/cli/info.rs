@@ -140,6 +140,7 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Mix(_) => "mix",
         Material::Principled(_) => "principled",
         Material::Relief(relief) => material_kind(&relief.material),
+        Material::Measured(_) => "measured",
     }
 }
 

@@ -215,10 +215,7 @@ impl<'a> Job<'a> {
             scene: path,
             camera: &view.name,
         };
-        let mut integrator = Integrator::from_desc(&prepared.desc.integrator);
-        if let Some(max_depth) = self.args.max_depth {
-            integrator = integrator.with_max_depth(max_depth.0);
-        }
+        let integrator = self.integrator(&prepared.desc)?;
         let film = view.film();
         let progress = reporter.progress();
         let stats = self
@@ -249,6 +246,26 @@ impl<'a> Job<'a> {
             Some(reason) => Err(reason),
             None => Ok(statistics),
         }
+    }
+
+    /// The scene's integrator, as changed by the command line.
+    fn integrator(&self, desc: &SceneDesc) -> Result<Integrator> {
+        let mut integrator = Integrator::from_desc(&desc.integrator);
+        if let Some(name) = &self.args.integrator {
+            integrator = integrator.named(name);
+        }
+        if let Some(max_depth) = self.args.max_depth {
+            integrator = integrator.with_max_depth(max_depth.0);
+        }
+        let Some(strategy) = self.args.strategy else {
+            return Ok(integrator);
+        };
+        integrator.with_strategy(strategy.into()).ok_or_else(|| {
+            let name = integrator.name();
+            Error::Usage(format!(
+                "--strategy is for the integrator `path`: `{name}` has no strategies"
+            ))
+        })
     }
 
     #[expect(clippy::too_many_arguments, reason = "gathers what the parts of a render know")]

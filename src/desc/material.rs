@@ -1,6 +1,8 @@
 //! Materials and the spectra that they and the lights are given.
 
-use super::{ImageId, MaterialId, TextureId, Textured};
+use std::sync::Arc;
+
+use super::{ImageId, MaterialId, MeasuredDesc, TextureId, Textured};
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -93,6 +95,8 @@ pub enum MaterialKind {
     },
     /// A surface by the parameters of artists.
     Principled(PrincipledDesc),
+    /// A surface by measurements.
+    Measured(Arc<MeasuredDesc>),
 }
 
 /// A coat and what lies between it and the surface under it.

@@ -14,7 +14,7 @@ pub struct MaterialEntry {
 }
 
 /// All kinds.
-pub static MATERIALS: [MaterialEntry; 10] = [
+pub static MATERIALS: [MaterialEntry; 11] = [
     MaterialEntry {
         name: "diffuse",
         doc: "Diffuse reflection on both sides",
@@ -137,6 +137,11 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &DISPLACEMENT,
             &NORMAL_MAP,
         ],
+    },
+    MaterialEntry {
+        name: "measured",
+        doc: "Reflection as measured, on both sides, from a file of RGL's database",
+        parameters: &[&MEASURED_FILE, &DISPLACEMENT, &NORMAL_MAP],
     },
     MaterialEntry {
         name: "interface",
@@ -339,3 +344,5 @@ pub(super) static NORMAL_MAP: Parameter = Parameter {
     kind: ParameterKind::File,
     doc: "An image of shading normals in the tangent frame, (1 + n) / 2 by colour, linear; counts before displacement; none by default",
 };
+
+pub(super) static MEASURED_FILE: Parameter = parameter("filename", ParameterKind::File, "A .bsdf file");

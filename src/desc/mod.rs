@@ -14,12 +14,14 @@
 //! - `PixelFilter "blackmanharris"`.
 
 mod bytes;
+mod integrator;
 mod light;
 mod material;
 mod material_kinds;
 mod parameter;
 pub mod pbrt;
 pub mod ply;
+pub mod rgl;
 mod shape;
 mod texture;
 mod texture_kinds;
@@ -32,6 +34,10 @@ use glam::DAffine3;
 use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
+pub use integrator::{
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
+    Termination,
+};
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
@@ -39,6 +45,7 @@ pub use material::{
 };
 pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
+pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
@@ -150,31 +157,6 @@ pub struct InstanceDesc {
     pub world_from_instance: MotionDesc,
     /// The object's name in the `ObjectInstance` directive.
     pub span: Span,
-}
-
-/// How light transport is to be estimated.
-#[derive(Clone, Debug, PartialEq)]
-pub enum IntegratorDesc {
-    /// Unidirectional path tracing with next-event estimation.
-    Path {
-        /// The greatest number of scattering events of a path (pbrt's count; default 5); `None`: as many as Russian roulette
-        /// grants.
-        max_depth: Option<u32>,
-        /// How the light of next-event estimation is chosen; the expectation is the same for all.
-        light_sampler: LightSamplerKind,
-    },
-}
-
-/// How one of many lights is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LightSamplerKind {
-    /// By a bounding volume hierarchy over the lights (pbrt's default).
-    #[default]
-    Bvh,
-    /// In proportion to emitted power.
-    Power,
-    /// All alike.
-    Uniform,
 }
 
 /// How strictly a file is read.

@@ -29,6 +29,17 @@ impl Ray {
     /// ends the process above 1.844e18.
     pub const LARGEST: f32 = 1.8e18;
 
+    /// A ray that takes no part.
+    pub const INACTIVE: Self = Self {
+        origin: Vec3::ZERO,
+        direction: Vec3::Z,
+        tnear: 0.0,
+        tfar: f32::NEG_INFINITY,
+        time: 0.0,
+        mask: 0,
+        id: 0,
+    };
+
     /// A ray that sees everything, at any distance.
     pub fn new(origin: Vec3, direction: Vec3, time: f32) -> Self {
         Self {

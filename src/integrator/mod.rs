@@ -12,50 +12,110 @@
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
 //! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
 
+mod fault;
+mod kajiya;
+mod lane;
+mod numbers;
 mod path;
 mod schedule;
 mod shadow;
+mod stage;
 mod wave;
 
 use std::time::{Duration, Instant};
 
+#[doc(hidden)]
+pub use fault::Fault;
+pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
 pub use schedule::{Progress, Silent};
 
-use crate::desc::IntegratorDesc;
+use crate::desc::{IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
 use crate::film::Film;
 use crate::scene::{Scene, View};
 
 /// The integrators there are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// Unidirectional path tracing.
     Path(PathIntegrator),
+    /// The rendering equation taken literally.
+    Kajiya(KajiyaIntegrator),
 }
 
 impl Integrator {
-    /// The names by which a command line chooses one.
-    pub const NAMES: &[&str] = &["path"];
+    /// The names by which a scene or a command line chooses one.
+    pub const NAMES: &[&str] = &["path", "kajiya"];
 
     /// The one that a scene asks for.
     pub fn from_desc(desc: &IntegratorDesc) -> Self {
-        match *desc {
-            IntegratorDesc::Path { max_depth, .. } => Self::Path(PathIntegrator { max_depth }),
+        let max_depth = desc.max_depth;
+        match desc.kind {
+            IntegratorKind::Path(PathDesc {
+                strategy,
+                heuristic,
+                splitting,
+            }) => Self::Path(PathIntegrator {
+                max_depth,
+                strategy,
+                heuristic,
+                splitting,
+                fault: Fault::None,
+            }),
+            IntegratorKind::Kajiya(KajiyaDesc {
+                termination,
+                branching,
+                distribution,
+            }) => Self::Kajiya(KajiyaIntegrator {
+                max_depth,
+                termination,
+                branching,
+                distribution,
+            }),
         }
+    }
+
+    /// The integrator `name`, one of [`Integrator::NAMES`], with its default parameters and this one's depth; this one if that is
+    /// its name.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        let kind = match name {
+            _ if name == self.name() => return self,
+            "kajiya" => IntegratorKind::Kajiya(KajiyaDesc::default()),
+            _ => IntegratorKind::Path(PathDesc::default()),
+        };
+        let (Self::Path(PathIntegrator { max_depth, .. }) | Self::Kajiya(KajiyaIntegrator { max_depth, .. })) = self;
+        Self::from_desc(&IntegratorDesc {
+            max_depth,
+            light_sampler: LightSamplerKind::default(),
+            kind,
+        })
     }
 
     /// Its name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Path(_) => "path",
+            Self::Kajiya(_) => "kajiya",
         }
     }
 
     /// The same integrator for paths of at most `max_depth` scattering events; `None` for any number.
     #[must_use]
-    pub fn with_max_depth(self, max_depth: Option<u32>) -> Self {
+    pub fn with_max_depth(mut self, max_depth: Option<u32>) -> Self {
+        match &mut self {
+            Self::Path(path) => path.max_depth = max_depth,
+            Self::Kajiya(kajiya) => kajiya.max_depth = max_depth,
+        }
+        self
+    }
+
+    /// The same integrator, looking for light by `strategy`. `None` if it knows no other way than its own.
+    #[must_use]
+    pub fn with_strategy(self, strategy: Strategy) -> Option<Self> {
         match self {
-            Self::Path(_) => Self::Path(PathIntegrator { max_depth }),
+            Self::Path(path) => Some(Self::Path(PathIntegrator { strategy, ..path })),
+            Self::Kajiya(_) => None,
         }
     }
 
@@ -65,6 +125,7 @@ impl Integrator {
         let start = Instant::now();
         let mut stats = match self {
             Self::Path(path) => schedule::render_tiles(scene, view, film, path, progress),
+            Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, progress),
         };
         stats.render_time = start.elapsed();
         stats

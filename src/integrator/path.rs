@@ -1,79 +1,133 @@
-//! Unidirectional path tracing: next-event estimation and BSDF sampling at every vertex, combined by the power heuristic
-//! (Veach 1997, section 9.2.4), and Russian roulette on the throughput.
+//! Unidirectional path tracing: next-event estimation and BSDF sampling at every vertex, combined by multiple importance sampling
+//! (Veach 1997, section 9.2), and Russian roulette on the throughput.
+//!
+//! With `splitting` N a path becomes N at its first scattering event that is not specular: N light samples and N BSDF samples, each
+//! with a weight of 1/N. As both techniques take the same number, the weights between them stay.
 
-use super::shadow::shadow_ray;
-use super::wave::{EventNumbers, Lane, Origin, Slot, Stage};
-use crate::geometry::{Ray, SurfaceInteraction};
-use crate::light::LightDensity;
+use super::fault::Fault;
+use super::lane::{Lane, Origin};
+use super::numbers::EventNumbers;
+use super::stage::{Estimator, Stage, Vertex};
+use crate::desc::{Heuristic, Strategy};
+use crate::geometry::{Ray, RayCone, SurfaceInteraction};
+use crate::light::{LightDensity, LightEnd, LightSample};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
-use crate::sampling::power_heuristic;
+use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
 
 /// The path tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathIntegrator {
     /// The greatest number of scattering events, as in pbrt; `None` for any number.
     pub max_depth: Option<u32>,
+    /// How light is looked for.
+    pub strategy: Strategy,
+    /// How the two ways of finding it are weighed.
+    pub heuristic: Heuristic,
+    /// Paths that go on from the first scattering event that is not specular, at least 1.
+    pub splitting: u32,
+    #[doc(hidden)]
+    pub fault: Fault,
 }
 
 /// From this depth on a path without limit survives with at most [`LAST_SURVIVAL`], or one between perfect mirrors would not end.
 const LAST_SURVIVAL_DEPTH: u32 = 64;
 const LAST_SURVIVAL: f32 = 0.95;
 
-impl PathIntegrator {
-    /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray.
+/// A scattering event.
+struct Event<'a> {
+    /// The path; of a split one, its part of the throughput.
+    lane: Lane,
+    si: &'a SurfaceInteraction,
+    bsdf: &'a Bsdf<'a>,
+    wo: Vec3,
+    numbers: &'a EventNumbers,
+    /// The cone of the ray from here on.
+    cone: RayCone,
+}
+
+impl Estimator for PathIntegrator {
     #[inline]
-    pub(super) fn shade(
-        &self,
-        stage: &mut Stage,
-        lane: &Lane,
-        ray: &Ray,
-        surface: Option<SurfaceInteraction>,
-        numbers: &EventNumbers,
-    ) -> Option<(Lane, Ray)> {
-        let Some(mut si) = surface else {
-            add_environment(stage, lane, ray);
-            return None;
+    fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>) {
+        let Vertex { lane, ray, .. } = vertex;
+        let Some(mut si) = vertex.surface else {
+            self.add_environment(stage, lane, ray);
+            return;
         };
         let cone = lane.cone.after(si.p.distance(ray.origin));
         si.footprint = cone.width;
-        let (si, wo) = (&si, si.wo);
-        add_emission(stage, lane, si, wo);
+        self.add_emission(stage, lane, &si);
         if self.max_depth == Some(stage.depth) {
-            return None;
+            return;
         }
-        let slot = &mut stage.slots[lane.slot as usize];
-        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, &mut slot.lambda);
-        if !bsdf.is_delta() {
-            sample_light(stage, lane, si, &bsdf, wo, numbers);
+        let lambda = &mut stage.slots[lane.slot as usize].lambda;
+        let bsdf = stage.scene.material(si.hit.geometry).bsdf(&si, lambda);
+        let mut event = Event {
+            lane: *lane,
+            si: &si,
+            bsdf: &bsdf,
+            wo: si.wo,
+            numbers: vertex.numbers,
+            cone,
+        };
+        if self.splitting == 1 || lane.split || bsdf.is_delta() {
+            self.scatter(stage, &event);
+            return;
         }
-        let sample = bsdf.sample_f(wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance)?;
+        event.lane.split = true;
+        event.lane.beta *= 1.0 / self.splitting as f32;
+        for branch in 0..self.splitting {
+            let stream = lane.stream.branch(branch);
+            event.lane.stream = stream;
+            let numbers = &EventNumbers::draw(&stream, stage.depth);
+            self.scatter(stage, &Event { numbers, ..event });
+        }
+    }
+}
+
+impl PathIntegrator {
+    /// Looks for light from a scattering event, and goes on from it.
+    #[inline]
+    fn scatter(&self, stage: &mut Stage<'_>, event: &Event<'_>) {
+        if self.strategy != Strategy::Bsdf && !event.bsdf.is_delta() {
+            self.sample_light(stage, event);
+        }
+        let Event { lane, si, numbers, .. } = event;
+        let sample = event
+            .bsdf
+            .sample_f(event.wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance);
+        let Some(sample) = sample else { return };
         let mut next = Lane {
-            slot: lane.slot,
             beta: lane.beta * sample.weight(),
             eta_scale: lane.eta_scale * sample.eta * sample.eta,
             origin: match sample.density {
                 Density::Delta(_) => Origin::Delta,
                 Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
-            cone,
+            cone: event.cone,
+            ..*lane
         };
+        if self.fault.is(Fault::EtaForgotten) {
+            next.beta *= sample.eta * sample.eta;
+        }
         let survival = self.survival(stage.depth, &next);
         if survival < 1.0 {
             if numbers.roulette >= survival {
-                return None;
+                return;
             }
             next.beta *= 1.0 / survival;
         }
-        Some((next, si.spawn_ray(sample.wi)))
+        stage.go_on(&next, &si.spawn_ray(sample.wi));
     }
 
-    /// The probability with which a path goes on after the scattering event `depth`.
+    /// The probability with which a path goes on after the scattering event `depth`. A path that was split is as worthy of going on
+    /// as the whole.
     fn survival(&self, depth: u32, lane: &Lane) -> f32 {
         if depth == 0 {
             return 1.0;
         }
-        let throughput = lane.beta.max_value() * lane.eta_scale;
+        let whole = if lane.split { self.splitting as f32 } else { 1.0 };
+        let throughput = lane.beta.max_value() * lane.eta_scale * whole;
         let limit = if self.max_depth.is_none() && depth >= LAST_SURVIVAL_DEPTH {
             LAST_SURVIVAL
         } else {
@@ -81,75 +135,102 @@ impl PathIntegrator {
         };
         throughput.min(limit)
     }
-}
 
-/// Adds what the environment sends along a ray that left the scene.
-fn add_environment(stage: &mut Stage, lane: &Lane, ray: &Ray) {
-    let slot = &mut stage.slots[lane.slot as usize];
-    for (id, light) in stage.scene.environments() {
-        let weight = match lane.origin {
-            Origin::Delta => 1.0,
-            Origin::Sampled { p, n, pdf } => power_heuristic(
-                pdf.0,
-                stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, ray.direction, ray.time).0,
-            ),
-        };
-        slot.l += lane.beta * light.le(ray.origin, ray.direction, ray.time, &slot.lambda) * weight;
-    }
-}
-
-/// Adds what the surface that a ray hit emits.
-#[inline]
-fn add_emission(stage: &mut Stage, lane: &Lane, si: &SurfaceInteraction, wo: Vec3) {
-    let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) else {
-        return;
-    };
-    let light = stage.scene.light(id);
-    let slot = &mut stage.slots[lane.slot as usize];
-    let le = light.le(si, wo, &slot.lambda);
-    if le.is_black() {
-        return;
-    }
-    let weight = match lane.origin {
-        Origin::Delta => 1.0,
-        Origin::Sampled { p, n, pdf } => {
-            power_heuristic(pdf.0, stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0)
+    /// Adds what the environment sends along a ray that left the scene.
+    fn add_environment(&self, stage: &mut Stage<'_>, lane: &Lane, ray: &Ray) {
+        let slot = &mut stage.slots[lane.slot as usize];
+        for (id, light) in stage.scene.environments() {
+            let weight = self.weight_of_hit(lane, |p, n| {
+                let pmf = stage.scene.light_sampler().pmf(p, n, id);
+                SolidAnglePdf(pmf * light.pdf_li(p, ray.direction, ray.time).0)
+            });
+            slot.l += lane.beta * light.le(ray.origin, ray.direction, ray.time, &slot.lambda) * weight;
         }
-    };
-    slot.l += lane.beta * le * weight;
+    }
+
+    /// Adds what the surface that a ray hit emits.
+    #[inline]
+    fn add_emission(&self, stage: &mut Stage<'_>, lane: &Lane, si: &SurfaceInteraction) {
+        let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) else {
+            return;
+        };
+        let light = stage.scene.light(id);
+        let slot = &mut stage.slots[lane.slot as usize];
+        let le = light.le(si, si.wo, &slot.lambda);
+        if le.is_black() {
+            return;
+        }
+        let weight = self.weight_of_hit(lane, |p, n| {
+            let pdf = stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0;
+            if self.fault.is(Fault::PdfInWrongMeasure) {
+                return SolidAnglePdf(pdf * si.ng.dot(si.wo).abs() / p.distance_squared(si.p));
+            }
+            SolidAnglePdf(pdf)
+        });
+        slot.l += lane.beta * le * weight;
+    }
+
+    /// The weight of light that a lane's ray met, which light samples from point p with normal n would have found with the density
+    /// `pdf_light(p, n)`.
+    #[inline]
+    fn weight_of_hit(&self, lane: &Lane, pdf_light: impl FnOnce(Vec3, Vec3) -> SolidAnglePdf) -> f32 {
+        match lane.origin {
+            Origin::Delta => 1.0,
+            Origin::Sampled { p, n, pdf } => match self.strategy {
+                Strategy::Bsdf => 1.0,
+                Strategy::Light => 0.0,
+                Strategy::Mis => self.weight(pdf, pdf_light(p, n)),
+            },
+        }
+    }
+
+    /// The weight of a sample with density `pdf` where the other technique has the density `other`.
+    #[inline]
+    fn weight(&self, pdf: SolidAnglePdf, other: SolidAnglePdf) -> f32 {
+        if self.fault.is(Fault::LightTwice) {
+            return 1.0;
+        }
+        match self.heuristic {
+            Heuristic::Power => power_heuristic(pdf.0, other.0),
+            Heuristic::Balance => balance_heuristic(pdf.0, other.0),
+        }
+    }
+
+    /// Samples a point of a light and asks for its light.
+    #[inline]
+    fn sample_light(&self, stage: &mut Stage<'_>, event: &Event<'_>) -> Option<()> {
+        let Event { lane, si, numbers, .. } = event;
+        let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
+        let light = stage.scene.light(chosen.light);
+        let sample = light.sample_li(si.p, si.time, numbers.light, &stage.slot(lane).lambda)?;
+        let bsdf = event.bsdf.eval(event.wo, sample.wi, TransportMode::Radiance)?;
+        if bsdf.f.is_black() {
+            return None;
+        }
+        let cos = if self.fault.is(Fault::MissingCosine) {
+            1.0
+        } else {
+            bsdf.cos_theta
+        };
+        let mut factor = cos / chosen.pmf;
+        if let LightDensity::Continuous(pdf) = sample.density {
+            if self.strategy == Strategy::Mis {
+                factor *= self.weight(SolidAnglePdf(chosen.pmf * pdf.0), bsdf.pdf);
+            }
+            factor /= pdf.0;
+        }
+        if self.fault.is(Fault::WrongJacobian) {
+            factor /= cos_at_light(&sample);
+        }
+        stage.connect(lane, si, &sample, lane.beta * bsdf.f * sample.li * factor);
+        Some(())
+    }
 }
 
-/// Samples a point of a light and queues the shadow ray to it.
-#[inline]
-fn sample_light(
-    stage: &mut Stage,
-    lane: &Lane,
-    si: &SurfaceInteraction,
-    bsdf: &Bsdf,
-    wo: Vec3,
-    numbers: &EventNumbers,
-) -> Option<()> {
-    let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
-    let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
-    let sample = stage
-        .scene
-        .light(chosen.light)
-        .sample_li(si.p, si.time, numbers.light, &slot.lambda)?;
-    let bsdf = bsdf.eval(wo, sample.wi, TransportMode::Radiance)?;
-    if bsdf.f.is_black() {
-        return None;
+/// |cos| at the point of a light; 1 where it has no surface.
+fn cos_at_light(sample: &LightSample) -> f32 {
+    match sample.end {
+        LightEnd::Point { ng, .. } if ng != Vec3::ZERO => ng.dot(sample.wi).abs(),
+        LightEnd::Point { .. } | LightEnd::Infinity => 1.0,
     }
-    let mut factor = bsdf.cos_theta / chosen.pmf;
-    if let LightDensity::Continuous(pdf) = sample.density {
-        factor *= power_heuristic(chosen.pmf * pdf.0, bsdf.pdf.0) / pdf.0;
-    }
-    let ray = shadow_ray(si, sample.wi, sample.end);
-    if ray.is_valid() {
-        stage
-            .shadows
-            .push(&ray, lane.slot, lane.beta * bsdf.f * sample.li * factor);
-    } else {
-        slot.broken = true;
-    }
-    Some(())
 }

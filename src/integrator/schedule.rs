@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use super::RenderStats;
-use super::path::PathIntegrator;
+use super::stage::Estimator;
 use super::wave::Wave;
 use crate::film::{Film, TileSums, lock};
 use crate::scene::{Scene, View};
@@ -34,11 +34,11 @@ struct Unit<'a> {
 }
 
 /// Renders all samples of all tiles on the threads of the current rayon pool.
-pub(super) fn render_tiles(
+pub(super) fn render_tiles<E: Estimator>(
     scene: &Scene,
     view: &View,
     film: &Film,
-    path: &PathIntegrator,
+    estimator: &E,
     progress: &dyn Progress,
 ) -> RenderStats {
     let Range { start, end } = view.samples;
@@ -58,7 +58,7 @@ pub(super) fn render_tiles(
         let mut wave = Wave::new(scene, view);
         while let Some(unit) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
             let rect = lock(unit.tile).rect();
-            wave.render(path, unit.tile, rect, unit.samples.clone());
+            wave.render(estimator, unit.tile, rect, unit.samples.clone());
             let samples = rect.area() * unit.samples.len() as u64;
             progress.advance(done.fetch_add(samples, Ordering::Relaxed) + samples, total);
         }

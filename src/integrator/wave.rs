@@ -1,7 +1,8 @@
 //! A wave: the paths of one tile, at one sample index or several, that go through each stage together.
 //!
 //! A *slot* is a pixel sample; it stays until its last shadow ray is back, then is turned into sensor values and retires. A *lane*
-//! is a live path, and names its slot; lane i is ray i % 8 of packet i / 8. Lanes are compacted as paths end.
+//! is a live path, and names its slot. The lanes that go on after a stage make up the next batch. Where paths branch they are
+//! several; the last one goes first, so that their number stays in proportion to the depth of paths.
 //!
 //! Camera rays are packed by blocks of 4 x 2 pixels at absolute coordinates: what a packet is made of does not depend on the crop.
 //! A block that the crop touches is traced whole, as a backend's answer to coherent rays may depend on their mates. Where it does
@@ -9,77 +10,27 @@
 
 use std::ops::Range;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use super::path::PathIntegrator;
+use super::lane::{Batch, Lane, Origin, Slot};
+use super::numbers::{DETECTOR_GROUP, EventLanes, FILM_GROUP};
 use super::shadow::ShadowQueue;
+use super::stage::{Estimator, Stage, Vertex};
 use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
-use crate::geometry::{HitPacket, LANES, Ray, RayCone, RayPacket};
-use crate::math::{Vec2, Vec3, Vectorizer};
-use crate::sampling::{SampleStream, SolidAnglePdf};
+use crate::geometry::{HitPacket, LANES, Ray, RayCone};
+use crate::math::{Vec2, Vectorizer};
+use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
 use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths};
 
 /// Columns and rows of the block of pixels whose camera rays share a packet.
 const BLOCK: [u32; 2] = [4, 2];
 
-/// Groups of random numbers that the camera sample uses.
-const FILM_GROUP: u32 = 0;
-const DETECTOR_GROUP: u32 = 1;
-/// The first group of the scattering events.
-const FIRST_PATH_GROUP: u32 = 2;
-
-/// Lanes that a wave is filled up to with several sample indices, where a tile is small.
-const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
-
-/// A pixel sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Slot {
-    pixel: [u32; 2],
-    sample: u32,
-    filter_weight: f32,
-    /// Its random numbers.
-    pub stream: SampleStream,
-    /// Its wavelengths.
-    pub lambda: Wavelengths,
-    /// Radiance gathered so far, not divided by the density of the wavelengths.
-    pub l: SampledSpectrum,
-    /// Set if a ray of it could not be traced.
-    pub broken: bool,
-}
-
-/// Where a lane's ray came from, which says how else the light that it meets could have been found.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Origin {
-    /// The camera or a delta lobe: in no other way.
-    Delta,
-    /// A BSDF sample at a point with a normal, with this density: by light sampling too.
-    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
-}
-
-/// A live path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lane {
-    /// Its slot; [`Lane::NO_SLOT`] for a camera ray that is traced for the sake of its packet only.
-    pub slot: u32,
-    /// Throughput.
-    pub beta: SampledSpectrum,
-    /// Product of the squared relative indices of the refractions so far: without it Russian roulette would see the squeezing
-    /// of radiance inside glass as absorption.
-    pub eta_scale: f32,
-    /// Where the ray came from.
-    pub origin: Origin,
-    /// How wide the ray is.
-    pub cone: RayCone,
-}
-
-impl Lane {
-    /// No slot: nothing is wanted of this ray.
-    pub const NO_SLOT: u32 = u32::MAX;
-}
+/// Lanes of a batch, which a wave is filled up to with several sample indices where a tile is small.
+pub(super) const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
 
 /// The paths that a thread is working on.
 pub(super) struct Wave<'a> {
@@ -88,26 +39,14 @@ pub(super) struct Wave<'a> {
     /// Whether whole tiles are rendered, as packets' answers depend on all their lanes.
     whole_tiles: bool,
     vectorizer: Vectorizer,
-    /// Stands in for the stream of a lane that is not there.
-    idle_stream: SampleStream,
     slots: Vec<Slot>,
-    lanes: Vec<Lane>,
-    rays: Vec<RayPacket>,
+    /// Batches to come, the next one last.
+    pending: Vec<Batch>,
+    /// Batches whose memory can be used again.
+    spare: Vec<Batch>,
     hits: Vec<HitPacket>,
     shadows: ShadowQueue,
     stats: RenderStats,
-}
-
-/// What an integrator's shading stage works on: one lane after the other, in order.
-pub(super) struct Stage<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Scattering events before this stage.
-    pub depth: u32,
-    /// All slots.
-    pub slots: &'a mut [Slot],
-    /// The queue for shadow rays.
-    pub shadows: &'a mut ShadowQueue,
 }
 
 impl<'a> Wave<'a> {
@@ -119,10 +58,9 @@ impl<'a> Wave<'a> {
             view,
             whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
             vectorizer: Vectorizer::default(),
-            idle_stream: view.sampler.start(0, 0, 0),
             slots: Vec::new(),
-            lanes: Vec::new(),
-            rays: Vec::new(),
+            pending: Vec::new(),
+            spare: Vec::new(),
             hits: Vec::new(),
             shadows: ShadowQueue::default(),
             stats: RenderStats::default(),
@@ -135,7 +73,13 @@ impl<'a> Wave<'a> {
     }
 
     /// Renders the samples `samples` of the pixels `rect` of a tile.
-    pub fn render(&mut self, path: &PathIntegrator, tile: &Mutex<TileSums>, rect: PixelRect, samples: Range<u32>) {
+    pub fn render<E: Estimator>(
+        &mut self,
+        estimator: &E,
+        tile: &Mutex<TileSums>,
+        rect: PixelRect,
+        samples: Range<u32>,
+    ) {
         let traced = self.traced_rect(rect);
         let at_once = if self.whole_tiles {
             1
@@ -144,11 +88,10 @@ impl<'a> Wave<'a> {
         };
         for first in samples.clone().step_by(at_once as usize) {
             self.generate(rect, traced, first..(first + at_once).min(samples.end));
-            let mut depth = 0;
-            while !self.lanes.is_empty() {
-                self.trace(if depth == 0 { RayKind::Camera } else { RayKind::Bounce });
-                self.shade(path, depth);
-                depth += 1;
+            while let Some(batch) = self.pending.pop() {
+                self.trace(&batch);
+                self.shade(estimator, &batch);
+                self.spare.push(batch);
             }
             self.retire(tile);
         }
@@ -166,48 +109,49 @@ impl<'a> Wave<'a> {
         }
     }
 
-    /// Makes slots, lanes and camera rays.
+    /// Makes slots, and the batch of camera rays.
     fn generate(&mut self, rect: PixelRect, traced: PixelRect, samples: Range<u32>) {
         self.slots.clear();
-        self.lanes.clear();
-        self.rays.clear();
+        let mut batch = self.spare.pop().unwrap_or_default();
+        batch.clear();
+        batch.depth = 0;
         for sample in samples {
             for y in (traced.y0..traced.y1).step_by(BLOCK[1] as usize) {
                 for x in (traced.x0..traced.x1).step_by(BLOCK[0] as usize) {
-                    self.generate_block(rect, traced, [x, y], sample);
+                    self.generate_block(&mut batch, rect, traced, [x, y], sample);
                 }
             }
         }
+        self.pending.push(batch);
     }
 
-    fn generate_block(&mut self, rect: PixelRect, traced: PixelRect, corner: [u32; 2], sample: u32) {
+    fn generate_block(&mut self, batch: &mut Batch, rect: PixelRect, traced: PixelRect, corner: [u32; 2], sample: u32) {
         let pixels: [[u32; 2]; LANES] =
             std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
-        let streams = pixels.map(|[x, y]| self.view.sampler.start(x.cast_signed(), y.cast_signed(), sample));
+        let streams = pixels.map(|[x, y]| {
+            let sampler = &self.view.sampler;
+            sampler.start(x.cast_signed(), y.cast_signed(), sample)
+        });
         let film = SampleStream::draw4_lanes(self.vectorizer, &streams, FILM_GROUP);
         let detector = SampleStream::draw4_lanes(self.vectorizer, &streams, DETECTOR_GROUP);
-        let mut packet = RayPacket::EMPTY;
         for (i, &[x, y]) in pixels.iter().enumerate() {
             let mut lane = Lane {
                 slot: Lane::NO_SLOT,
+                split: false,
+                stream: streams[i],
                 beta: SampledSpectrum::ONE,
                 eta_scale: 1.0,
                 origin: Origin::Delta,
                 cone: RayCone::default(),
             };
+            let mut ray = Ray::INACTIVE;
             if traced.contains(x, y) {
                 let of = |group: &[[f32; LANES]; 4]| group.map(|numbers| numbers[i]);
-                let (mut slot, ray, cone) = camera_slot(
-                    self.scene,
-                    self.view,
-                    [x, y],
-                    (sample, streams[i]),
-                    of(&film),
-                    of(&detector),
-                );
+                let (mut slot, camera_ray, cone) =
+                    camera_slot(self.scene, self.view, [x, y], sample, of(&film), of(&detector));
                 lane.cone = cone;
-                if ray.is_valid() {
-                    packet.set(i, &ray);
+                if camera_ray.is_valid() {
+                    ray = camera_ray;
                     self.stats.camera_rays += 1;
                 } else {
                     slot.broken = true;
@@ -217,83 +161,64 @@ impl<'a> Wave<'a> {
                     self.slots.push(slot);
                 }
             }
-            self.lanes.push(lane);
+            batch.push(&lane, &ray);
         }
-        self.rays.push(packet);
     }
 
     /// Finds what the ray of each lane hits.
-    fn trace(&mut self, kind: RayKind) {
-        self.hits.resize(self.rays.len(), HitPacket::EMPTY);
+    fn trace(&mut self, batch: &Batch) {
+        let kind = if batch.depth == 0 {
+            RayKind::Camera
+        } else {
+            RayKind::Bounce
+        };
+        self.hits.resize(batch.rays.len(), HitPacket::EMPTY);
         let start = Instant::now();
-        self.scene.intersect(kind, &mut self.rays, &mut self.hits);
+        self.scene.intersect(kind, &batch.rays, &mut self.hits);
         self.stats.backend_time += start.elapsed();
         if kind == RayKind::Bounce {
-            self.stats.bounce_rays += self.lanes.len() as u64;
+            self.stats.bounce_rays += batch.lanes.len() as u64;
         }
     }
 
-    /// Shades each lane, compacts those that go on, and brings home what lights send.
-    fn shade(&mut self, path: &PathIntegrator, depth: u32) {
+    /// Shades each lane, collects those that go on, and brings home what lights send.
+    fn shade<E: Estimator>(&mut self, estimator: &E, batch: &Batch) {
         let mut stage = Stage {
             scene: self.scene,
-            depth,
+            depth: batch.depth,
             slots: &mut self.slots,
             shadows: &mut self.shadows,
+            pending: &mut self.pending,
+            spare: &mut self.spare,
+            next: Batch::default(),
         };
-        let mut alive = 0;
-        for first in (0..self.lanes.len()).step_by(LANES) {
-            let mates = first..(first + LANES).min(self.lanes.len());
-            let hits = &self.hits[first / LANES];
-            let surfaces = self
-                .scene
-                .world()
-                .surfaces(self.vectorizer, &self.rays[first / LANES], hits);
-            let streams = std::array::from_fn(|i| match self.lanes.get(first + i) {
-                Some(lane) if lane.slot != Lane::NO_SLOT => stage.slots[lane.slot as usize].stream,
-                _ => self.idle_stream,
-            });
-            let numbers = StageNumbers::draw(self.vectorizer, &streams, depth);
-            for i in mates {
-                let (packet, lane) = (&self.rays[i / LANES], self.lanes[i]);
-                if lane.slot == Lane::NO_SLOT || !packet.is_active(i % LANES) {
+        stage.start_batch();
+        for (k, (rays, hits)) in batch.rays.iter().zip(&self.hits).enumerate() {
+            let mates = &batch.lanes[k * LANES..((k + 1) * LANES).min(batch.lanes.len())];
+            let surfaces = self.scene.world().surfaces(self.vectorizer, rays, hits);
+            let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
+            let numbers = EventLanes::draw(self.vectorizer, &streams, batch.depth);
+            for (i, lane) in mates.iter().enumerate() {
+                if lane.slot == Lane::NO_SLOT || !rays.is_active(i) {
                     continue;
                 }
-                let ray = packet.get(i % LANES);
-                let surface = hits.get(i % LANES).map(|hit| {
-                    let behind = self.scene.interaction_behind(&ray, hit, hits.t[i % LANES]);
-                    behind.unwrap_or_else(|| surfaces.get(i % LANES, &ray, hit))
+                let ray = rays.get(i);
+                let surface = hits.get(i).map(|hit| {
+                    let behind = self.scene.interaction_behind(&ray, hit, hits.t[i]);
+                    behind.unwrap_or_else(|| surfaces.get(i, &ray, hit))
                 });
-                let numbers = numbers.lane(i % LANES);
-                let Some((next, ray)) = path.shade(&mut stage, &lane, &ray, surface, &numbers) else {
-                    continue;
+                let vertex = Vertex {
+                    lane,
+                    ray: &ray,
+                    surface,
+                    numbers: &numbers.get(i),
                 };
-                if !ray.is_valid() {
-                    stage.slots[next.slot as usize].broken = true;
-                    continue;
-                }
-                // Lane `alive` was read at or before this one.
-                self.rays[alive / LANES].set(alive % LANES, &ray);
-                self.lanes[alive] = next;
-                alive += 1;
+                estimator.shade(&mut stage, vertex);
             }
+            stage.limit_shadows(&mut self.stats);
         }
-        self.lanes.truncate(alive);
-        self.rays.truncate(alive.div_ceil(LANES));
-        if let Some(last) = self.rays.last_mut() {
-            for lane in (alive - 1) % LANES + 1..LANES {
-                last.tfar[lane] = f32::NEG_INFINITY;
-            }
-        }
-        self.stats.shadow_rays += self.shadows.len() as u64;
-        let elapsed = self.flush_shadows();
-        self.stats.backend_time += elapsed;
-    }
-
-    fn flush_shadows(&mut self) -> Duration {
-        let slots = &mut self.slots;
-        self.shadows
-            .flush(self.scene, |slot, value| slots[slot as usize].l += value)
+        stage.finish_batch();
+        stage.flush_shadows(&mut self.stats);
     }
 
     /// Turns slots into sensor values.
@@ -323,7 +248,7 @@ fn camera_slot(
     scene: &Scene,
     view: &View,
     pixel: [u32; 2],
-    (sample, stream): (u32, SampleStream),
+    sample: u32,
     [film_x, film_y, lens_x, lens_y]: [f32; 4],
     [u_lambda, u_time, ..]: [f32; 4],
 ) -> (Slot, Ray, RayCone) {
@@ -344,56 +269,9 @@ fn camera_slot(
         pixel,
         sample,
         filter_weight: filter.weight,
-        stream,
         lambda,
         l: SampledSpectrum::ZERO,
         broken: false,
     };
     (slot, ray, cone)
-}
-
-/// The random numbers of a scattering event of eight paths: see the table in [`integrator`](super).
-pub(super) struct StageNumbers {
-    light: [[f32; LANES]; 4],
-    bsdf: [[f32; LANES]; 4],
-}
-
-/// The random numbers of a scattering event.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct EventNumbers {
-    /// Point of a light.
-    pub light: Vec2,
-    /// Which light.
-    pub which_light: f32,
-    /// Russian roulette.
-    pub roulette: f32,
-    /// Direction within a lobe.
-    pub bsdf: Vec2,
-    /// Which lobe.
-    pub lobe: f32,
-}
-
-impl StageNumbers {
-    fn draw(vectorizer: Vectorizer, streams: &[SampleStream; LANES], depth: u32) -> Self {
-        let group = FIRST_PATH_GROUP + 2 * depth;
-        Self {
-            light: SampleStream::draw4_lanes(vectorizer, streams, group),
-            bsdf: SampleStream::draw4_lanes(vectorizer, streams, group + 1),
-        }
-    }
-
-    #[inline]
-    fn lane(&self, i: usize) -> EventNumbers {
-        let ([x, y, which_light, roulette], [bsdf_x, bsdf_y, lobe, _]) = (
-            self.light.map(|numbers| numbers[i]),
-            self.bsdf.map(|numbers| numbers[i]),
-        );
-        EventNumbers {
-            light: Vec2::new(x, y),
-            which_light,
-            roulette,
-            bsdf: Vec2::new(bsdf_x, bsdf_y),
-            lobe,
-        }
-    }
 }

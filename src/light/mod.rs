@@ -134,6 +134,14 @@ impl Light {
         }
     }
 
+    /// Whether only [`Light::sample_li`] finds it, and in one direction from each point.
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::Area(_) | Self::Environment(_) => false,
+            Self::Point(_) | Self::Spot(_) | Self::Goniometric(_) | Self::Projection(_) | Self::Distant(_) => true,
+        }
+    }
+
     /// Where and where to it emits, for a hierarchy over lights; `None` if it is infinitely far away.
     pub fn bounds(&self) -> Option<LightBounds> {
         match self {

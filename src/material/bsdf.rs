@@ -1,7 +1,9 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
 use super::sides::Sides;
-use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, Principled, ThinDielectric};
+use super::{
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
@@ -139,6 +141,7 @@ pub enum Lobe<'a> {
     ThinDielectric(ThinDielectric),
     Layered(Layered),
     Principled(Principled<'a>),
+    Measured(Measured<'a>),
 }
 
 /// The scattering function at a point of a surface for the wavelengths of a path.
@@ -186,11 +189,43 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Principled(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
             Lobe::Dielectric(lobe) => lobe.is_delta(),
+        }
+    }
+
+    /// The frame of the shading normal.
+    #[inline]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Whether directions on the other side of the shading normal than `wo` may carry light, by other than delta lobes.
+    pub fn transmits(&self) -> bool {
+        // Where a map has bent that normal, some of them reflect.
+        self.sides.is_some()
+            || match &self.lobe {
+                Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => {
+                    false
+                }
+                Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => {
+                    true
+                }
+            }
+    }
+
+    /// Whether it has delta lobes, perhaps beside others.
+    pub fn has_delta(&self) -> bool {
+        match &self.lobe {
+            Lobe::Layered(lobe) => lobe.has_delta(),
+            _ => self.is_delta(),
         }
     }
 
@@ -205,7 +240,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
-            | Lobe::Principled(_) => false,
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
         }
     }
 
@@ -233,6 +269,7 @@ impl<'a> Bsdf<'a> {
             Lobe::ThinDielectric(_) => None,
             Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
             Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
+            Lobe::Measured(lobe) => lobe.eval(wo, wi),
             Lobe::Conductor(lobe) => lobe.eval(wo, wi),
             Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }?;
@@ -280,6 +317,7 @@ impl<'a> Bsdf<'a> {
             Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
             Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Lobe::Measured(lobe) => lobe.sample_f(wo, u),
             Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
             Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }?;

@@ -69,6 +69,14 @@ impl Body {
         }
     }
 
+    /// The reflectance of a mirror for a direction; `None` of anything else.
+    fn mirror_reflectance(&self, w: Vec3) -> Option<SampledSpectrum> {
+        match self {
+            Self::Conductor(metal) if metal.is_delta() => Some(metal.fresnel(w.z.abs())),
+            Self::Diffuse(_) | Self::Conductor(_) => None,
+        }
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
         match self {
             Self::Diffuse(lobe) => lobe.eval(wo, wi),
@@ -93,6 +101,11 @@ impl Layered {
     /// Whether it is a coated mirror.
     pub fn is_delta(&self) -> bool {
         self.coat.is_delta() && self.body.is_delta() && self.interlayer.albedo.is_black()
+    }
+
+    /// Whether light is reflected by a smooth coat.
+    pub fn has_delta(&self) -> bool {
+        self.coat.is_delta()
     }
 
     /// See [`Bsdf::eval`](super::Bsdf::eval).
@@ -225,11 +238,33 @@ impl Layered {
             * self.interlayer.albedo
             * light.weight()
             * (phase * weight * transmittance(thickness - walk.z, light.wi) / light.wi.z.abs());
+        if let Some(mirror) = self.body.mirror_reflectance(light.wi) {
+            *sum += self.connect_mirrors(walk, connection, mirror);
+        }
         let pdf = self.scatter_in_medium(walk, random);
         if walk.w.z > 0.0 {
             self.connect_coat(walk, connection, Some(pdf), thickness - walk.z, sum);
         }
         (walk.w.z != 0.0).then_some(())
+    }
+
+    /// What the medium scatters to wi by way of a mirror under a smooth coat, which nothing else finds: down to the mirror first, or
+    /// up; and any number of times to and fro between the two. The directions of all these chains are two.
+    fn connect_mirrors(&self, walk: &Walk, connection: &Connection, mirror: SampledSpectrum) -> SampledSpectrum {
+        let Interlayer { thickness, g, .. } = self.interlayer;
+        let light = &connection.light;
+        if !self.coat.is_delta() {
+            return SampledSpectrum::ZERO;
+        }
+        let across = transmittance(thickness, light.wi);
+        let to_and_fro = mirror * (self.coat.reflectance(light.wi.z) * across * across);
+        let chains = to_and_fro.map(|r| 1.0 / (1.0 - r).max(1e-6));
+        let up = henyey_greenstein(walk.w.dot(-light.wi), g) * transmittance(thickness - walk.z, light.wi);
+        let down_direction = Vec3::new(-light.wi.x, -light.wi.y, light.wi.z);
+        let down = henyey_greenstein(walk.w.dot(down_direction), g) * transmittance(walk.z, light.wi) * across;
+        let scattered = walk.beta * self.interlayer.albedo * light.weight() * (1.0 / light.wi.z.abs());
+        // The direct way up is counted already.
+        scattered * (mirror * chains * down + (chains - SampledSpectrum::ONE) * up)
     }
 
     /// Adds what the body reflects to wi, and goes on.
@@ -265,10 +300,16 @@ impl Layered {
         distance: f32,
         sum: &mut SampledSpectrum,
     ) {
-        if let Some(exit) = self.coat.transmission(-walk.w, connection.wi, connection.mode) {
-            let weight = pdf.map_or(1.0, |pdf| power_heuristic(pdf, exit.pdf));
-            *sum += walk.beta * exit.f * (weight * transmittance(distance, walk.w));
-        }
+        let Some(exit) = self.coat.transmission(-walk.w, connection.wi, connection.mode) else {
+            return;
+        };
+        // The density with which the walk's direction would have been drawn from wi: pbrt-v4 takes the other way round.
+        let light = self.coat.transmission(connection.wi, -walk.w, connection.mode);
+        let weight = match (pdf, light) {
+            (Some(pdf), Some(light)) => power_heuristic(pdf, light.pdf),
+            _ => 1.0,
+        };
+        *sum += walk.beta * exit.f * (weight * transmittance(distance, walk.w));
     }
 
     /// Goes to where the walk meets something next; `None` for a direction along the layers.

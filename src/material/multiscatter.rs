@@ -6,7 +6,7 @@
 //! reflection is exact. The expectation is reciprocal, single values are not.
 //!
 //! The height of a facet is given by its rank: the fraction of facets that lie lower. A ray that moves from rank c meets the next
-//! facet at rank c (1 - u)^(-1 / Lambda), and escapes if that is above 1. A ray below the surface is followed in the
+//! facet at rank c (1 - u)^(-1 / Lambda), and escapes if that is above 1: with probability c^Lambda. A ray below the surface is followed in the
 //! point-mirrored world, where the surface has the same statistics and ranks are counted from the other end.
 
 use super::argument_random::ArgumentRandom;
@@ -19,6 +19,7 @@ use crate::spectrum::SampledSpectrum;
 const MOST_FACETS: usize = 200;
 /// Walks that carry less go on by chance.
 const SMALL_WEIGHT: f32 = 0.1;
+const LEAST_RANK: f32 = 1e-7;
 
 /// What facets are made of.
 #[derive(Clone, Copy, Debug)]
@@ -55,14 +56,22 @@ impl Walk {
         }
     }
 
-    /// Moves to the next facet; false if there is none.
-    fn advance(&mut self, facets: &Microfacets, u: f32) -> bool {
+    /// The probability that there is a next facet, and how ranks grow on the way to it.
+    fn hit_probability(&self, facets: &Microfacets) -> (f32, f32) {
         let lambda = facets.signed_lambda(self.w);
         if lambda.abs() < 1e-6 {
-            return false;
+            (0.0, lambda)
+        } else if lambda > 0.0 {
+            (-(lambda * self.rank.ln()).exp_m1(), lambda)
+        } else {
+            (1.0, lambda)
         }
-        self.rank = (self.rank * (1.0 - u).powf(-1.0 / lambda)).max(1e-7);
-        self.rank <= 1.0
+    }
+
+    /// Moves to the next facet, of those that there may be.
+    fn advance(&mut self, (probability, lambda): (f32, f32), u: f32) {
+        let rank = self.rank * (1.0 - u * probability).powf(-1.0 / lambda);
+        self.rank = rank.clamp(LEAST_RANK, 1.0);
     }
 
     /// A world direction in the walk's frame, or back.
@@ -72,7 +81,7 @@ impl Walk {
 
     fn cross(&mut self, refracted: Vec3) {
         self.w = -refracted;
-        self.rank = (1.0 - self.rank).max(1e-7);
+        self.rank = (1.0 - self.rank).max(LEAST_RANK);
         self.below = !self.below;
     }
 }
@@ -84,9 +93,11 @@ impl RoughSurface<'_> {
         let mut walk = Walk::entering(wo);
         let mut weight = SampledSpectrum::ONE;
         for facet in 0..MOST_FACETS {
-            if !walk.advance(self.facets, random.unit()) {
+            let hit = walk.hit_probability(self.facets);
+            if random.unit() >= hit.0 {
                 return Some((walk.frame(walk.w), weight));
             }
+            walk.advance(hit, random.unit());
             let (u, u_lobe) = if facet == 0 {
                 (u, u_lobe)
             } else {
@@ -105,14 +116,21 @@ impl RoughSurface<'_> {
         let mut weight = SampledSpectrum::ONE;
         let mut sum = SampledSpectrum::ZERO;
         for facet in 0..MOST_FACETS {
-            if !walk.advance(self.facets, random.unit()) {
+            // What the next facet sends to wi counts whether the walk gets there or not: the density of facets seen by light that
+            // is about to escape is as large as its chance to meet one is small.
+            let hit = walk.hit_probability(self.facets);
+            if hit.0 == 0.0 {
                 break;
             }
+            walk.advance(hit, random.unit());
             let wi = walk.frame(wi);
             if wi.z < 0.0 {
-                sum += weight * self.transmitted(&walk, wi);
+                sum += weight * (hit.0 * self.transmitted(&walk, wi));
             } else if facet > 0 {
-                sum += weight * self.reflected(&walk, wi);
+                sum += weight * (self.reflected(&walk, wi) * hit.0);
+            }
+            if random.unit() >= hit.0 {
+                break;
             }
             self.scatter(&mut walk, &mut weight, random.pair(), random.unit());
             if survive(&mut weight, &mut random).is_none() {

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
-    Principled, PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
+    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
+    ThinDielectric,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -76,6 +77,8 @@ pub enum Material {
     Principled(Arc<PrincipledMaterial>),
     /// Another material under a bump or normal map.
     Relief(Arc<Relief>),
+    /// By measurements.
+    Measured(Arc<MeasuredTables>),
 }
 
 /// A dielectric coat and what is under it.
@@ -237,6 +240,7 @@ impl Material {
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
+            Self::Measured(tables) => (Lobe::Measured(Measured::new(tables, lambda)), true),
         }
     }
 

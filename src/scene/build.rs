@@ -9,7 +9,7 @@ use super::spectra::SpectrumCompiler;
 use super::textures::TextureCompiler;
 use super::{Scene, SceneOptions, Surface};
 use crate::accel;
-use crate::desc::{AreaLightDesc, IntegratorDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
+use crate::desc::{AreaLightDesc, LightDesc, LightKind, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, Shape, TriangleMesh, WorldBuilder};
 use crate::light::{
@@ -59,8 +59,7 @@ impl Scene {
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
-        let IntegratorDesc::Path { light_sampler, .. } = desc.integrator;
-        let light_sampler = match light_sampler {
+        let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights, &bounds),
             LightSamplerKind::Power => LightSampler::power(&builder.lights, &bounds),
             LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights),

@@ -75,14 +75,18 @@ fn interaction_near(world: &World, ray: &Ray, hit: Hit, t: f32) -> SurfaceIntera
 }
 
 impl Scene {
-    /// Finds the nearest hit of each ray that takes part: [`Accel::intersect`](crate::accel::Accel::intersect), with the scene's cut-outs. Ray ids are not kept.
-    pub fn intersect(&self, kind: RayKind, rays: &mut [RayPacket], hits: &mut [HitPacket]) {
+    /// Finds the nearest hit of each ray that takes part: [`Accel::intersect`](crate::accel::Accel::intersect), with the scene's cut-outs.
+    pub fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket]) {
         if !self.has_cutouts {
             return self.accel.intersect(kind, rays, hits, None);
         }
-        number(rays);
-        let cutouts = Cutouts { scene: self, rays };
-        self.accel.intersect(kind, rays, hits, Some(&cutouts));
+        let mut rays = rays.to_vec();
+        number(&mut rays);
+        let cutouts = Cutouts {
+            scene: self,
+            rays: &rays,
+        };
+        self.accel.intersect(kind, &rays, hits, Some(&cutouts));
     }
 
     /// Marks the rays that hit anything: [`Accel::occluded`](crate::accel::Accel::occluded), with the scene's cut-outs. Ray ids are not kept.

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
 use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc};
-use crate::material::{Coat, ConductorIor, Material, MixMaterial, PrincipledMaterial, PrincipledTables, Relief};
+use crate::material::{
+    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PrincipledMaterial, PrincipledTables, Relief,
+};
 
 /// All materials of a scene, by their ids.
 pub(super) fn compile_materials(descs: &[MaterialDesc], textures: &mut TextureCompiler<'_>) -> Vec<Material> {
@@ -93,6 +95,9 @@ impl MaterialCompiler<'_, '_> {
                 coat: Arc::new(coating(coat, self.textures)),
             },
             MaterialKind::Principled(desc) => Material::Principled(Arc::new(principled(desc, self.textures))),
+            MaterialKind::Measured(desc) => {
+                Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
+            }
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),

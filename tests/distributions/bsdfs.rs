@@ -87,15 +87,12 @@ fn samples_agree_with_f_and_pdf() {
                 let again = bsdf.pdf(wo, sample.wi, mode).0;
                 assert!(close(again, pdf.0), "{name}, {mode:?}: pdf {again}, sampled {}", pdf.0);
                 assert!((bsdf.abs_cos(sample.wi) - sample.cos_theta).abs() < 1e-5, "{name}");
-                let expected_eta = match kind {
-                    Kind::Glass(_, eta, ..) if sample.wi.z * wo.z < 0.0 => {
-                        if wo.z > 0.0 {
-                            eta
-                        } else {
-                            1.0 / eta
-                        }
-                    }
-                    _ => 1.0,
+                let expected_eta = if sample.wi.z * wo.z > 0.0 {
+                    1.0
+                } else if wo.z > 0.0 {
+                    kind.eta()
+                } else {
+                    1.0 / kind.eta()
                 };
                 assert_eq!(sample.eta, expected_eta, "{name}");
             }
@@ -144,10 +141,7 @@ fn scattering_is_reciprocal() {
     let mut compared = 0;
     for kind in KINDS {
         let bsdf = kind.bsdf();
-        let index = |w: Vec3| match kind {
-            Kind::Glass(_, eta, ..) if w.z < 0.0 => eta,
-            _ => 1.0,
-        };
+        let index = |w: Vec3| if w.z < 0.0 { kind.eta() } else { 1.0 };
         for _ in 0..2000 {
             let [a, b] = [(); 2].map(|()| {
                 let z = 2.0 * f64::from(random.unit()) - 1.0;

@@ -1,6 +1,7 @@
 //! The lobes with exact densities, and what each one's model says that it reflects and transmits.
 
 use std::f64::consts::PI;
+use std::fmt;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
@@ -16,7 +17,7 @@ use super::common::grooves::Grooves;
 use super::common::microfacet::{Shape, Slopes, conductor_reflectance, dielectric_reflectance, direction};
 
 /// What is tested, with what the model is made of.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub enum Kind {
     Diffuse,
     /// Roughness.
@@ -33,6 +34,19 @@ pub enum Kind {
 const METAL_N: f64 = 0.2;
 const METAL_K: f64 = 3.9;
 const ALBEDO: f32 = 0.7;
+
+impl fmt::Debug for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Diffuse => write!(f, "diffuse"),
+            Self::OrenNayar(roughness) => write!(f, "grooves {roughness}"),
+            Self::Paper(r, t) => write!(f, "paper {r} {t}"),
+            Self::Metal(distribution, x, y) => write!(f, "metal {distribution:?} {x} {y}"),
+            Self::Glass(distribution, eta, x, y) => write!(f, "glass {eta} {distribution:?} {x} {y}"),
+            Self::Principled(p) => write!(f, "principled, metallic {} spec_trans {}", p.metallic, p.spec_trans),
+        }
+    }
+}
 
 impl Kind {
     /// The BSDF where the normal is +z and the tangent +x.
@@ -62,6 +76,15 @@ impl Kind {
             }
         };
         Bsdf::new(Frame::from_normal_tangent(ns, dpdu), lobe)
+    }
+
+    /// The index of refraction of the inside over that of the outside, if there is light there.
+    pub fn eta(self) -> f32 {
+        match self {
+            Self::Glass(_, eta, ..) => eta,
+            Self::Principled(p) => p.eta,
+            _ => 1.0,
+        }
     }
 
     /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
@@ -162,20 +185,24 @@ const ALL: PrincipledParameters = PrincipledParameters {
     clearcoat_gloss: 0.1,
 };
 
-/// The cosine-weighted integral of f over all directions, by the midpoint rule in azimuth and the polar angle.
-fn integral(bsdf: &Bsdf<'_>, wo: DVec3, mode: TransportMode) -> f64 {
-    const STEPS: (usize, usize) = (1200, 600);
+/// The cosine-weighted integral of f over all directions: the midpoint rule in azimuth, of a periodic function, and Gauss's rule
+/// of two points in the polar angle.
+pub fn integral(bsdf: &Bsdf<'_>, wo: DVec3, mode: TransportMode) -> f64 {
+    const STEPS: usize = 250;
+    // Towards grazing angles the half vector turns ever faster with the azimuth.
+    let azimuths = if wo.z.abs() < 0.1 { 2400 } else { 360 };
     let mut sum = 0.0;
-    for i in 0..STEPS.0 {
-        let theta = PI * (i as f64 + 0.5) / STEPS.0 as f64;
-        for j in 0..STEPS.1 {
-            let phi = 360.0 * (j as f64 + 0.5) / STEPS.1 as f64;
+    for i in 0..2 * STEPS {
+        let node = if i % 2 == 0 { -1.0 } else { 1.0 } / 3.0_f64.sqrt();
+        let theta = PI * ((i / 2) as f64 + 0.5 + 0.5 * node) / STEPS as f64;
+        for j in 0..azimuths {
+            let phi = 360.0 * (f64::from(j) + 0.5) / f64::from(azimuths);
             let wi = direction(theta.to_degrees(), phi);
             let f = f64::from(bsdf.f(wo.as_vec3(), wi.as_vec3(), mode).0[0]);
-            sum += f * wi.z.abs() * theta.sin();
+            sum += 0.5 * f * wi.z.abs() * theta.sin();
         }
     }
-    sum * (PI / STEPS.0 as f64) * (2.0 * PI / STEPS.1 as f64)
+    sum * (PI / STEPS as f64) * (2.0 * PI / f64::from(azimuths))
 }
 
 /// Polar angle and azimuth of wo, in degrees, for both sides: from the normal to grazing.

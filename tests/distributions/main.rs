@@ -9,6 +9,7 @@ mod energy;
 mod kinds;
 mod light_samplers;
 mod lights;
+mod measured;
 
 use glam::Vec2;
 

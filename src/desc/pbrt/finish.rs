@@ -103,7 +103,7 @@ fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> (Vec<MaterialDesc
     let mut undefined = Vec::new();
     for slot in slots {
         let material = match slot {
-            Slot::Surface(material) => material,
+            Slot::Surface(material) => *material,
             Slot::Interface => {
                 ids.push(None);
                 continue;

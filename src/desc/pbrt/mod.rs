@@ -14,6 +14,7 @@ mod film;
 mod finish;
 mod images;
 mod input;
+mod integrator;
 mod light;
 mod material;
 mod options;

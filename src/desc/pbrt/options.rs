@@ -3,10 +3,11 @@
 use super::camera::{self, NamedCamera};
 use super::files::Context;
 use super::film;
+use super::integrator;
 use super::params::Param;
-use super::reader::{ParamReader, unknown_type};
+use super::reader::ParamReader;
 use super::report::Report;
-use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, LightSamplerKind, MotionDesc, SamplerDesc, ViewDesc};
+use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MotionDesc, SamplerDesc, ViewDesc};
 use crate::error::Span;
 
 /// A directive that is allowed only before `WorldBegin` and has a type and parameters.
@@ -94,7 +95,7 @@ impl Options {
             OptionKind::Film => self.film.replace(film::read_film(reader, name)).is_some(),
             OptionKind::PixelFilter => self.filter.replace(film::read_filter(reader, name)).is_some(),
             OptionKind::Sampler => self.sampler.replace(film::read_sampler(reader, name)).is_some(),
-            OptionKind::Integrator => self.integrator.replace(read_integrator(reader, name)).is_some(),
+            OptionKind::Integrator => self.integrator.replace(integrator::read(reader, name)).is_some(),
         };
         if replaced {
             let message = format!("this `{}` replaces the one before", kind.directive());
@@ -144,79 +145,7 @@ impl Options {
 
     /// The integrator; by default path tracing with 5 bounces.
     pub fn integrator(&self) -> IntegratorDesc {
-        self.integrator.clone().unwrap_or(IntegratorDesc::Path {
-            max_depth: Some(DEFAULT_MAX_DEPTH.unsigned_abs()),
-            light_sampler: LightSamplerKind::Bvh,
-        })
-    }
-}
-
-const DEFAULT_MAX_DEPTH: i32 = 5;
-
-fn read_integrator(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
-    const LATER: [&str; 10] = [
-        "ambientocclusion",
-        "bdpt",
-        "function",
-        "lightpath",
-        "mlt",
-        "randomwalk",
-        "simplepath",
-        "simplevolpath",
-        "sppm",
-        "kajiya",
-    ];
-    let span = reader.span;
-    match kind {
-        "path" => {}
-        "volpath" => {
-            let message = "`volpath` is taken for `path`, which is the same without participating media";
-            reader.report().warning(span, message);
-        }
-        _ => {
-            let classes = (&["path", "volpath"][..], &LATER[..]);
-            unknown_type(reader.report(), "integrator", kind, span, classes, "`path` is used");
-        }
-    }
-    let max_depth = reader.integer_in(
-        "maxdepth",
-        DEFAULT_MAX_DEPTH,
-        |v| v >= -1,
-        "0 or more, or -1 for no limit",
-    );
-    let light_sampler = light_sampler(&mut reader);
-    if reader.boolean("regularize", false) {
-        let span = reader.span_of("regularize");
-        let message = "regularization is not supported";
-        reader.report().unsupported(span, message, "it is left out");
-    }
-    reader.finish();
-    IntegratorDesc::Path {
-        max_depth: u32::try_from(max_depth).ok(),
-        light_sampler,
-    }
-}
-
-fn light_sampler(reader: &mut ParamReader<'_>) -> LightSamplerKind {
-    const KNOWN: [&str; 4] = ["bvh", "power", "uniform", "exhaustive"];
-    let Some((name, span)) = reader.string("lightsampler") else {
-        return LightSamplerKind::default();
-    };
-    match name.as_str() {
-        "bvh" => LightSamplerKind::Bvh,
-        "power" => LightSamplerKind::Power,
-        "uniform" => LightSamplerKind::Uniform,
-        "exhaustive" => {
-            let message =
-                "the light sampler `exhaustive` is not there: `bvh` is used, which converges to the same image";
-            reader.report().warning(span, message);
-            LightSamplerKind::Bvh
-        }
-        _ => {
-            let message = format!("unknown light sampler `{name}`");
-            reader.report().unknown(span, message, "`bvh` is used", &name, &KNOWN);
-            LightSamplerKind::Bvh
-        }
+        self.integrator.clone().unwrap_or_else(integrator::default)
     }
 }
 

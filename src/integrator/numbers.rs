@@ -1,0 +1,73 @@
+//! The random numbers of paths, by what they decide: see the table in [`integrator`](super).
+
+use crate::geometry::LANES;
+use crate::math::{Vec2, Vectorizer};
+use crate::sampling::SampleStream;
+
+/// Groups of random numbers that the camera sample uses.
+pub(super) const FILM_GROUP: u32 = 0;
+pub(super) const DETECTOR_GROUP: u32 = 1;
+/// The first group of the scattering events, each of which has two.
+const FIRST_EVENT_GROUP: u32 = 2;
+
+/// The random numbers of a scattering event.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EventNumbers {
+    /// Point of a light.
+    pub light: Vec2,
+    /// Which light.
+    pub which_light: f32,
+    /// Russian roulette.
+    pub roulette: f32,
+    /// Direction within a lobe.
+    pub bsdf: Vec2,
+    /// Which lobe.
+    pub lobe: f32,
+}
+
+impl EventNumbers {
+    /// Those of the scattering event `depth` of a path.
+    pub fn draw(stream: &SampleStream, depth: u32) -> Self {
+        let group = event_group(depth);
+        Self::new(stream.draw4(group), stream.draw4(group + 1))
+    }
+
+    #[inline]
+    fn new([light_x, light_y, which_light, roulette]: [f32; 4], [bsdf_x, bsdf_y, lobe, _]: [f32; 4]) -> Self {
+        Self {
+            light: Vec2::new(light_x, light_y),
+            which_light,
+            roulette,
+            bsdf: Vec2::new(bsdf_x, bsdf_y),
+            lobe,
+        }
+    }
+}
+
+fn event_group(depth: u32) -> u32 {
+    FIRST_EVENT_GROUP + 2 * depth
+}
+
+/// [`EventNumbers`] of eight paths.
+pub(super) struct EventLanes {
+    light: [[f32; LANES]; 4],
+    bsdf: [[f32; LANES]; 4],
+}
+
+impl EventLanes {
+    /// Those of the scattering event `depth` of each path.
+    pub fn draw(vectorizer: Vectorizer, streams: &[SampleStream; LANES], depth: u32) -> Self {
+        let group = event_group(depth);
+        Self {
+            light: SampleStream::draw4_lanes(vectorizer, streams, group),
+            bsdf: SampleStream::draw4_lanes(vectorizer, streams, group + 1),
+        }
+    }
+
+    /// Those of one of the paths.
+    #[inline]
+    pub fn get(&self, lane: usize) -> EventNumbers {
+        let of = |numbers: &[[f32; LANES]; 4]| numbers.map(|numbers| numbers[lane]);
+        EventNumbers::new(of(&self.light), of(&self.bsdf))
+    }
+}
