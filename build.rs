@@ -1,9 +1,39 @@
-//! Hands the version of the Embree that is linked on to the program, for `lucerna --version`.
+//! Hands the version of the Embree that is linked on to the program, for `lucerna --version`; writes the table of spectra of sRGB
+//! colours that textures are looked up in.
 
 use std::env;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+/// The solver and the tables that it needs are those of the program; the rest of them is not used here.
+#[path = "src/spectrum"]
+#[allow(dead_code, unused_imports, missing_docs)]
+mod spectrum {
+    mod cie;
+    mod description;
+    mod named;
+    mod rgb2spec;
+    #[path = "../../build/rgb_table.rs"]
+    pub mod rgb_table;
+    mod sampled;
+    mod wavelengths;
+
+    pub use sampled::{LANES, SampledSpectrum};
+    pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};
+}
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+    for source in [
+        "build.rs",
+        "build/rgb_table.rs",
+        "src/spectrum/cie.rs",
+        "src/spectrum/data",
+        "src/spectrum/named.rs",
+        "src/spectrum/rgb2spec.rs",
+    ] {
+        println!("cargo::rerun-if-changed={source}");
+    }
     // embree-sys says these; they are absent in a build without the feature `embree`.
     let part = |name: &str| env::var(format!("DEP_EMBREE_{name}")).ok();
     let version = match (part("VERSION_MAJOR"), part("VERSION_MINOR"), part("VERSION_PATCH")) {
@@ -15,4 +45,20 @@ fn main() {
     if let Some(rpath) = part("RPATH") {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{rpath}");
     }
+    write_table();
+}
+
+/// Writes the table beside the program's objects.
+fn write_table() {
+    let directory = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
+    let start = Instant::now();
+    let bytes: Vec<u8> = spectrum::rgb_table::coefficients()
+        .iter()
+        .flat_map(|c| c.to_le_bytes())
+        .collect();
+    fs::write(Path::new(&directory).join("rgb_table.bin"), bytes).expect("the build directory can be written");
+    println!(
+        "spectra of sRGB colours solved for in {:.1} s",
+        start.elapsed().as_secs_f64()
+    );
 }

@@ -6,6 +6,8 @@ mod bad_input;
 mod files;
 #[path = "desc/lights.rs"]
 mod lights;
+#[path = "desc/materials.rs"]
+mod materials;
 #[path = "desc/mutations.rs"]
 mod mutations;
 #[path = "desc/options.rs"]

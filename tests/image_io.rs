@@ -1,7 +1,9 @@
 //! Image files: what is written is read back, what is broken is refused, and a target is replaced whole or not at all.
 
 use lucerna::Error;
-use lucerna::image_io::{Comparison, Image, ImageMetadata, PendingOutput, Window, read, read_exr, read_png};
+use lucerna::image_io::{
+    Comparison, Encoding, Image, ImageMetadata, PendingOutput, Window, decode, read, read_exr, read_png,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::tempdir;
@@ -404,4 +406,63 @@ fn files_of_other_programs_are_read() {
     assert_eq!(image.pixel(7, 5), [0.076_057_58, 0.032_302_894, 0.007_341_178]);
     let mean = image.data().iter().map(|&v| f64::from(v)).sum::<f64>() / image.data().len() as f64;
     assert!((mean - 0.118_815_423).abs() < 1e-9, "{mean}");
+}
+
+/// The bytes of an image as another program would write them.
+fn foreign(format: image::ImageFormat, picture: &image::DynamicImage) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).expect("the format can be written");
+    bytes.into_inner()
+}
+
+#[test]
+fn other_formats_are_read() {
+    let rgb = image::RgbImage::from_fn(16, 8, |x, y| image::Rgb([10 + 8 * x as u8, 20 * y as u8, 200]));
+    let picture = image::DynamicImage::ImageRgb8(rgb.clone());
+    let path = Path::new("picture.tga");
+    let decoded = |format| decode(&foreign(format, &picture), path, Encoding::Linear).expect("a picture");
+    let tga = decoded(image::ImageFormat::Tga);
+    assert_eq!((tga.width(), tga.height(), tga.channels().len()), (16, 8, 3));
+    for (x, y, pixel) in rgb.enumerate_pixels() {
+        let expected = pixel.0.map(|code| f32::from(code) / 255.0);
+        assert_eq!(tga.pixel(x as usize, y as usize), expected);
+    }
+    // JPEG loses some: smooth pictures little.
+    let jpeg = decoded(image::ImageFormat::Jpeg);
+    for (a, b) in jpeg.data().iter().zip(tga.data()) {
+        assert!((a - b).abs() < 0.06, "{a} and {b}");
+    }
+    let srgb = decode(&foreign(image::ImageFormat::Tga, &picture), path, Encoding::Srgb).expect("a picture");
+    for (a, b) in srgb.data().iter().zip(tga.data()) {
+        assert!((lucerna::image_io::srgb::encode(*a) - b).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn radiance_files_have_their_exponents() {
+    let values = image::Rgb32FImage::from_fn(8, 2, |x, _| image::Rgb([2.0_f32.powi(x as i32 - 3), 0.5, 0.0]));
+    let bytes = foreign(
+        image::ImageFormat::Hdr,
+        &image::DynamicImage::ImageRgb32F(values.clone()),
+    );
+    let image = decode(&bytes, Path::new("x.hdr"), Encoding::Srgb).expect("a picture");
+    for (x, y, pixel) in values.enumerate_pixels() {
+        for (a, b) in image.pixel(x as usize, y as usize).iter().zip(pixel.0) {
+            // Eight bits of the largest component.
+            assert!((a - b).abs() <= pixel.0[0].max(0.5) / 128.0, "{a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_image_is_refused() {
+    let refused = |bytes: &[u8], name: &str| match decode(bytes, Path::new(name), Encoding::Srgb) {
+        Err(Error::Image { message, .. }) => message,
+        other => panic!("{other:?}"),
+    };
+    assert!(refused(b"hello", "x.png").contains("not a PNG"));
+    assert!(refused(b"", "x.png").contains("not a PNG"));
+    assert!(refused(b"\xff\xd8\xff\xe0 and no more", "x.jpg").contains("malformed JPEG"));
+    assert!(refused(b"#?RADIANCE\n", "x.hdr").contains("malformed HDR"));
+    assert!(refused(b"short", "x.tga").contains("malformed TGA"));
 }

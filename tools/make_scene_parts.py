@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes scenes/parts/: the meshes and the lists of instances that the scenes share. They are committed; this says where they come
+"""Writes scenes/parts/: the meshes, the lists of instances and the pictures that the scenes share. They are committed; this says where they come
 from. Needs nothing but Python 3. The same Python gives the same bytes.
 
     python3 tools/make_scene_parts.py
@@ -9,6 +9,7 @@ import math
 import pathlib
 
 import plants
+from pictures import png
 from ply import Mesh, lathe, spline
 
 PARTS = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "parts"
@@ -147,8 +148,57 @@ def flag_text():
     )
 
 
+def brick(x, y):
+    """Where a pixel of the 64 x 64 picture of bricks is: which brick, and its distances from the joints, in pixels."""
+    row = y // 16
+    along = (x + (row % 2) * 16) % 64
+    column, dx, dy = along // 32, along % 32, y % 16
+    return row * 2 + column, min(dx, 31 - dx), min(dy, 15 - dy)
+
+
+def brick_colour(x, y):
+    """Eight bricks of eight colours, and mortar."""
+    index, dx, dy = brick(x, y)
+    if min(dx, dy) < 1:
+        return (150, 144, 132)
+    shade = (math.sin(index * 12.9898) * 43758.5453) % 1.0
+    grain = (math.sin(x * 78.233 + y * 37.719) * 12543.123) % 1.0
+    light = 0.75 + 0.35 * shade + 0.12 * (grain - 0.5)
+    return tuple(min(255, round(light * c)) for c in (176, 88, 62))
+
+
+def brick_normal(x, y):
+    """The normals of bricks with round edges, (1 + n) / 2 by colour: x to the right, y up."""
+    def height(x, y):
+        _, dx, dy = brick(x % 64, y % 64)
+        return 1.6 * min(1.0, min(dx, dy) / 3.0) ** 0.5
+    n = ((height(x - 1, y) - height(x + 1, y)) / 2, (height(x, y + 1) - height(x, y - 1)) / 2, 1.0)
+    length = math.sqrt(sum(c * c for c in n))
+    return tuple(round(127.5 * (1 + c / length)) for c in n)
+
+
+def leaf_alpha(x, y):
+    """A leaf of five lobes, white on black, smooth at its edge."""
+    u, v = (x - 63.5) / 64, (63.5 - y) / 64
+    angle = math.atan2(u, v + 0.25)
+    radius = math.hypot(u, v + 0.25)
+    edge = 0.72 * (0.55 + 0.45 * abs(math.cos(2.5 * angle)) ** 0.6) * (1.0 - 0.3 * abs(angle) / math.pi)
+    stem = abs(u) < 0.03 and -0.95 < v < 0
+    inside = max((edge - radius) * 24, 1.0 if stem else -1.0)
+    return (round(255 * max(0.0, min(1.0, 0.5 + inside))),)
+
+
 def main():
     PARTS.mkdir(exist_ok=True)
+    pictures = {
+        "bricks": png(64, 64, brick_colour),
+        "bricks-normal": png(64, 64, brick_normal),
+        "leaf": png(128, 128, leaf_alpha),
+    }
+    for name, content in pictures.items():
+        path = PARTS / f"{name}.png"
+        path.write_bytes(content)
+        print(f"{path.name}: {len(content)} bytes")
     meshes = {
         "backdrop": backdrop(),
         "board-dark": board(1),

@@ -139,6 +139,8 @@ fn material_kind(material: &Material) -> &'static str {
         Material::CoatedConductor { .. } => "coatedconductor",
         Material::Mix(_) => "mix",
         Material::Principled(_) => "principled",
+        Material::Relief(relief) => material_kind(&relief.material),
+        Material::Measured(_) => "measured",
     }
 }
 

@@ -1,6 +1,8 @@
 //! Materials and the spectra that they and the lights are given.
 
-use super::{MaterialId, Textured};
+use std::sync::Arc;
+
+use super::{ImageId, MaterialId, MeasuredDesc, TextureId, Textured};
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -10,8 +12,19 @@ pub struct MaterialDesc {
     pub name: Option<String>,
     /// What it does to light.
     pub kind: MaterialKind,
+    /// What bends its shading normals.
+    pub relief: Option<ReliefDesc>,
     /// Its type in the file; for the default material, the whole file's first byte.
     pub span: Span,
+}
+
+/// What bends the shading normals of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReliefDesc {
+    /// A height over the surface, in scene units.
+    Displacement(TextureId),
+    /// An image of normals in the tangent frame, (1 + n) / 2 by colour, linear.
+    Normals(ImageId),
 }
 
 /// The kinds of materials, with pbrt-v4's parameters and defaults. Numbers that are not textures are within the ranges of
@@ -82,6 +95,8 @@ pub enum MaterialKind {
     },
     /// A surface by the parameters of artists.
     Principled(PrincipledDesc),
+    /// A surface by measurements.
+    Measured(Arc<MeasuredDesc>),
 }
 
 /// A coat and what lies between it and the surface under it.

@@ -14,16 +14,22 @@ pub struct MaterialEntry {
 }
 
 /// All kinds.
-pub static MATERIALS: [MaterialEntry; 10] = [
+pub static MATERIALS: [MaterialEntry; 11] = [
     MaterialEntry {
         name: "diffuse",
         doc: "Diffuse reflection on both sides",
-        parameters: &[&REFLECTANCE, &DIFFUSE_ROUGHNESS],
+        parameters: &[&REFLECTANCE, &DIFFUSE_ROUGHNESS, &DISPLACEMENT, &NORMAL_MAP],
     },
     MaterialEntry {
         name: "diffusetransmission",
         doc: "Lambertian reflection and transmission",
-        parameters: &[&REFLECTED, &TRANSMITTED, &TRANSMISSION_SCALE],
+        parameters: &[
+            &REFLECTED,
+            &TRANSMITTED,
+            &TRANSMISSION_SCALE,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
+        ],
     },
     MaterialEntry {
         name: "conductor",
@@ -38,6 +44,8 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &REMAP_ROUGHNESS,
             &DISTRIBUTION,
             &MULTIPLE_SCATTERING,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
         ],
     },
     MaterialEntry {
@@ -51,12 +59,14 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &REMAP_ROUGHNESS,
             &DISTRIBUTION,
             &MULTIPLE_SCATTERING,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
         ],
     },
     MaterialEntry {
         name: "thindielectric",
         doc: "A thin smooth sheet of a transparent medium, which light passes straight on",
-        parameters: &[&ETA],
+        parameters: &[&ETA, &DISPLACEMENT, &NORMAL_MAP],
     },
     MaterialEntry {
         name: "coateddiffuse",
@@ -74,6 +84,8 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &G,
             &MAX_DEPTH,
             &N_SAMPLES,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
         ],
     },
     MaterialEntry {
@@ -97,6 +109,8 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &G,
             &MAX_DEPTH,
             &N_SAMPLES,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
         ],
     },
     MaterialEntry {
@@ -120,7 +134,14 @@ pub static MATERIALS: [MaterialEntry; 10] = [
             &SHEEN_TINT,
             &CLEARCOAT,
             &CLEARCOAT_GLOSS,
+            &DISPLACEMENT,
+            &NORMAL_MAP,
         ],
+    },
+    MaterialEntry {
+        name: "measured",
+        doc: "Reflection as measured, on both sides, from a file of RGL's database",
+        parameters: &[&MEASURED_FILE, &DISPLACEMENT, &NORMAL_MAP],
     },
     MaterialEntry {
         name: "interface",
@@ -313,3 +334,15 @@ pub(super) static SHEEN_TINT: Parameter =
 pub(super) static CLEARCOAT: Parameter = parameter("clearcoat", unit(0.0), "How much there is of a coat of lacquer");
 pub(super) static CLEARCOAT_GLOSS: Parameter =
     parameter("clearcoat_gloss", unit(0.0), "From a satin coat to a glossy one");
+pub(super) static DISPLACEMENT: Parameter = Parameter {
+    name: "displacement",
+    kind: ParameterKind::FloatTextured { default: 0.0 },
+    doc: "Height over the surface in scene units: bends the shading normal (a bump map)",
+};
+pub(super) static NORMAL_MAP: Parameter = Parameter {
+    name: "normalmap",
+    kind: ParameterKind::File,
+    doc: "An image of shading normals in the tangent frame, (1 + n) / 2 by colour, linear; counts before displacement; none by default",
+};
+
+pub(super) static MEASURED_FILE: Parameter = parameter("filename", ParameterKind::File, "A .bsdf file");

@@ -22,6 +22,7 @@ mod material_kinds;
 mod parameter;
 pub mod pbrt;
 pub mod ply;
+pub mod rgl;
 mod shape;
 mod texture;
 mod texture_kinds;
@@ -41,13 +42,17 @@ pub use integrator::{
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use light_kinds::{LIGHTS, LightEntry};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, RoughnessDesc, SpectrumDesc,
-    SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
+    SpectrumDesc, SpectrumValue,
 };
 pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
+pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
-pub use texture::{ClassedTexture, TextureClass, TextureDesc, TextureId, TextureKind, Textured};
+pub use texture::{
+    ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
+    TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+};
 pub use texture_kinds::{TEXTURES, TextureEntry};
 pub use view::{CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, ViewDesc};
 
@@ -67,6 +72,8 @@ pub struct SceneDesc {
     pub materials: Vec<MaterialDesc>,
     /// What [`TextureId`] counts.
     pub textures: Vec<TextureDesc>,
+    /// What [`ImageId`] counts: every file once for each encoding.
+    pub images: Vec<ImageDesc>,
     /// The shapes that stand in the world themselves, in file order.
     pub shapes: Vec<ShapeDesc>,
     /// Groups of shapes that are seen only through instances; what [`ObjectId`] counts.

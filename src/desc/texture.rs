@@ -1,9 +1,13 @@
 //! Textures: numbers and spectra that vary over surfaces, and the parameters that may be given one.
 
-use glam::{DAffine3, DVec3};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 
 use super::SpectrumDesc;
 use crate::error::Span;
+use crate::image_io::Image;
 
 /// Index into [`SceneDesc::textures`](super::SceneDesc::textures).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -91,4 +95,140 @@ pub enum TextureKind<V> {
         /// In texture space; not zero.
         direction: DVec3,
     },
+    /// The two in turn, over unit squares.
+    Checkerboard2 {
+        /// The first is around (1/2, 1/2).
+        textures: [Textured<V>; 2],
+        /// Of the squares.
+        mapping: MappingDesc,
+    },
+    /// The two in turn, over unit cubes of texture space.
+    Checkerboard3 {
+        /// The first is around (1/2, 1/2, 1/2).
+        textures: [Textured<V>; 2],
+    },
+    /// Round dots in some of the unit squares.
+    Dots {
+        /// In the dots.
+        inside: Textured<V>,
+        /// Around them.
+        outside: Textured<V>,
+        /// Of the squares.
+        mapping: MappingDesc,
+    },
+    /// Between values at the corners of the unit square.
+    Bilerp {
+        /// At (0, 0), (0, 1), (1, 0) and (1, 1).
+        corners: [V; 4],
+        /// Of the square.
+        mapping: MappingDesc,
+    },
+    /// An image.
+    Image(ImageMapDesc),
+    /// Noise: octaves added up. Of numbers only.
+    Fbm(OctavesDesc),
+    /// The magnitude of noise: octaves added up. Of numbers only.
+    Wrinkled(OctavesDesc),
+    /// Waves. Of numbers only.
+    Windy,
+    /// Layers of stone. Of spectra only.
+    Marble {
+        /// Of the noise that bends the layers.
+        octaves: OctavesDesc,
+        /// Factor of the coordinates.
+        scale: f32,
+        /// How far the noise bends them.
+        variation: f32,
+    },
+}
+
+/// From a surface to texture coordinates (s, t).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MappingDesc {
+    /// The surface's coordinates times `scale` plus `delta`.
+    Uv {
+        /// `uscale` and `vscale`.
+        scale: Vec2,
+        /// `udelta` and `vdelta`.
+        delta: Vec2,
+    },
+    /// Polar angle and azimuth in texture space.
+    Spherical,
+    /// Azimuth and z in texture space.
+    Cylindrical,
+    /// Dot products with two vectors in texture space, plus `delta`.
+    Planar {
+        /// `v1` and `v2`.
+        vectors: [Vec3; 2],
+        /// `udelta` and `vdelta`.
+        delta: Vec2,
+    },
+}
+
+/// Noise of several frequencies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OctavesDesc {
+    /// How many at most.
+    pub octaves: u32,
+    /// Factor from each to the next.
+    pub roughness: f32,
+}
+
+/// Index into [`SceneDesc::images`](super::SceneDesc::images).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ImageId(pub u32);
+
+/// An image file that a scene names.
+#[derive(Clone, Debug)]
+pub struct ImageDesc {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its linear values; it has the channels R, G and B, or Y.
+    pub image: Arc<Image>,
+}
+
+/// An image as a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImageMapDesc {
+    /// Which.
+    pub image: ImageId,
+    /// Where it lies on the surface.
+    pub mapping: MappingDesc,
+    /// How texels are combined.
+    pub filter: ImageFilterDesc,
+    /// What is beyond its edges.
+    pub wrap: WrapDesc,
+    /// Factor of the values.
+    pub scale: f32,
+    /// Whether 1 - value is meant, after scaling.
+    pub invert: bool,
+}
+
+/// How texels are combined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImageFilterDesc {
+    /// The nearest one.
+    Point,
+    /// Four.
+    Bilinear,
+    /// Four of each of two levels.
+    Trilinear,
+    /// All within an ellipse.
+    Ewa {
+        /// The greatest ratio of its axes; at least 1.
+        max_anisotropy: f32,
+    },
+}
+
+/// What is beyond the edges of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrapDesc {
+    /// The image again.
+    Repeat,
+    /// Black.
+    Black,
+    /// Its edge.
+    Clamp,
+    /// The image flipped, as an octahedral map of the sphere continues.
+    OctahedralSphere,
 }

@@ -147,8 +147,8 @@ impl Image {
         )
     }
 
-    /// Which channels are red, green and blue; all three are Y in a grey image.
-    fn colour_channels(&self) -> Option<[usize; 3]> {
+    /// Which channels are red, green and blue; all three are Y in a grey image. `None` if the image has neither.
+    pub fn colour_channels(&self) -> Option<[usize; 3]> {
         let find = |name: &str| self.channels.iter().position(|channel| channel == name);
         match (find("R"), find("G"), find("B"), find("Y")) {
             (Some(r), Some(g), Some(b), _) => Some([r, g, b]),

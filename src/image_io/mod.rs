@@ -1,4 +1,5 @@
-//! Images to and from plain arrays: EXR and PNG files, atomic output, and measures of the difference of two images.
+//! Images to and from plain arrays: EXR and PNG files, readers of other formats, atomic output, and measures of the difference of
+//! two images.
 //!
 //! - [`Image`] holds linear values and knows which part of the whole picture it is (data window and display window).
 //! - [`read`] reads any supported file; [`PendingOutput`] writes one, in two steps around the render.
@@ -6,15 +7,19 @@
 //!
 //! Nothing here knows about scenes or rendering.
 
+mod encoding;
 mod exr;
 pub mod flip;
+mod foreign;
 mod image;
 mod metadata;
 mod metrics;
 mod output;
+mod pfm;
 mod png;
 pub mod srgb;
 
+pub use self::encoding::Encoding;
 pub use self::exr::read_exr;
 pub use self::image::{Image, Window};
 pub use self::metadata::ImageMetadata;
@@ -27,6 +32,8 @@ use std::path::Path;
 
 /// The first bytes of every EXR file.
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// The first bytes of every JPEG file.
+const JPEG_MAGIC: [u8; 3] = [0xff, 0xd8, 0xff];
 /// The first bytes of every PNG file.
 const PNG_MAGIC: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
@@ -40,9 +47,35 @@ pub fn read(path: &Path) -> Result<Image> {
     if bytes.starts_with(&EXR_MAGIC) {
         exr::decode(&bytes).map(|(image, _)| image)
     } else if bytes.starts_with(&PNG_MAGIC) {
-        png::decode(&bytes)
+        png::decode(&bytes, Encoding::Srgb)
     } else {
         Err("neither an EXR nor a PNG file".to_owned())
+    }
+    .map_err(|message| image_error(path, message))
+}
+
+/// The image in the bytes of a PNG, EXR, JPEG, TGA, HDR or PFM file, as linear values; the contents say which format it is, but for
+/// TGA, which has no mark and goes by the extension of `path`. `encoding` is that of the samples of the integer formats (PNG, JPEG,
+/// TGA), alpha excepted; a single part or frame is read.
+///
+/// # Errors
+/// [`Error::Image`] about `path` if it is none of these, malformed, or of a variant that is not supported.
+pub fn decode(bytes: &[u8], path: &Path, encoding: Encoding) -> Result<Image> {
+    let is_tga = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("tga"));
+    if bytes.starts_with(&EXR_MAGIC) {
+        exr::decode(bytes).map(|(image, _)| image)
+    } else if bytes.starts_with(&PNG_MAGIC) {
+        png::decode(bytes, encoding)
+    } else if bytes.starts_with(&JPEG_MAGIC) {
+        foreign::decode(bytes, ::image::ImageFormat::Jpeg, encoding)
+    } else if bytes.starts_with(b"#?") {
+        foreign::decode(bytes, ::image::ImageFormat::Hdr, encoding)
+    } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
+        pfm::decode(bytes)
+    } else if is_tga {
+        foreign::decode(bytes, ::image::ImageFormat::Tga, encoding)
+    } else {
+        Err("not a PNG, EXR, JPEG, TGA, HDR or PFM file".to_owned())
     }
     .map_err(|message| image_error(path, message))
 }

@@ -1,6 +1,6 @@
 //! PNG files: 8-bit sRGB out, 8 or 16 bits in.
 
-use super::{Image, Window, image_error, read_bytes, srgb};
+use super::{Encoding, Image, Window, image_error, read_bytes, srgb};
 use crate::Result;
 use ::png::{BitDepth, ColorType, Decoder, Encoder, SrgbRenderingIntent, Transformations};
 use std::io::Cursor;
@@ -13,11 +13,11 @@ use std::path::Path;
 /// # Errors
 /// [`crate::Error::Io`] if the file cannot be read, [`crate::Error::Image`] if it is malformed, truncated or too large for memory.
 pub fn read_png(path: &Path) -> Result<Image> {
-    decode(&read_bytes(path)?).map_err(|message| image_error(path, message))
+    decode(&read_bytes(path)?, Encoding::Srgb).map_err(|message| image_error(path, message))
 }
 
-/// The image in a PNG file's bytes, or what is wrong with them.
-pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
+/// The image in a PNG file's bytes, with colour in `encoding`, or what is wrong with them.
+pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image, String> {
     let malformed = |error: ::png::DecodingError| format!("malformed PNG file: {error}");
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::EXPAND);
@@ -49,7 +49,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     };
     let linear = |(i, value): (usize, f32)| {
         let is_alpha = i % names.len() >= colours;
-        if is_alpha { value } else { srgb::decode(value) }
+        if is_alpha { value } else { encoding.decode(value) }
     };
     let data = encoded.into_iter().enumerate().map(linear).collect();
     let side = |n: u32| i32::try_from(n).map_err(|_| "malformed PNG file: larger than PNG allows".to_owned());

@@ -76,7 +76,7 @@ impl Estimator for KajiyaIntegrator {
             ..*lane
         };
         if !bsdf.is_delta() {
-            add_delta_lights(stage, &whole, &si, &bsdf);
+            add_delta_lights(stage, &whole, &si, &bsdf, vertex.numbers.light);
         }
         for branch in 0..self.branching {
             let mut next = whole;
@@ -146,9 +146,9 @@ impl KajiyaIntegrator {
 }
 
 /// Adds the light of all lights that no direction drawn from a density meets.
-fn add_delta_lights(stage: &mut Stage<'_>, lane: &Lane, si: &SurfaceInteraction, bsdf: &Bsdf) {
+fn add_delta_lights(stage: &mut Stage<'_>, lane: &Lane, si: &SurfaceInteraction, bsdf: &Bsdf, u: Vec2) {
     for light in stage.scene.lights().iter().filter(|light| light.is_delta()) {
-        let Some(sample) = light.sample_li(si.p, si.time, Vec2::ZERO, &stage.slot(lane).lambda) else {
+        let Some(sample) = light.sample_li(si.p, si.time, u, &stage.slot(lane).lambda) else {
             continue;
         };
         if let Some(value) = bsdf.eval(si.wo, sample.wi, TransportMode::Radiance) {

@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use crate::accel::{Accel, RayKind};
+use crate::accel::RayKind;
 use crate::geometry::{LANES, Ray, RayPacket, SurfaceInteraction};
 use crate::light::LightEnd;
 use crate::math::Vec3;
+use crate::scene::Scene;
 use crate::spectrum::SampledSpectrum;
 
 /// The ray from `si` in direction `wi` to where a light was sampled. It ends just before the light's own surface.
@@ -51,12 +52,12 @@ impl ShadowQueue {
 
     /// Traces all rays, hands the contributions of those that are not blocked to `add` in order, and empties the queue. Returns
     /// the time inside the backend.
-    pub fn flush(&mut self, accel: &dyn Accel, mut add: impl FnMut(u32, SampledSpectrum)) -> Duration {
+    pub fn flush(&mut self, scene: &Scene, mut add: impl FnMut(u32, SampledSpectrum)) -> Duration {
         if self.contributions.is_empty() {
             return Duration::ZERO;
         }
         let start = Instant::now();
-        accel.occluded(RayKind::Shadow, &mut self.packets, None);
+        scene.occluded(RayKind::Shadow, &mut self.packets);
         let elapsed = start.elapsed();
         for (i, contribution) in self.contributions.iter().enumerate() {
             if !self.packets[i / LANES].is_occluded(i % LANES) {

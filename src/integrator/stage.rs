@@ -113,7 +113,8 @@ impl Stage<'_> {
     pub(super) fn flush_shadows(&mut self, stats: &mut RenderStats) {
         stats.shadow_rays += self.shadows.len() as u64;
         let slots = &mut *self.slots;
-        let accel = self.scene.accel();
-        stats.backend_time += self.shadows.flush(accel, |slot, value| slots[slot as usize].l += value);
+        stats.backend_time += self
+            .shadows
+            .flush(self.scene, |slot, value| slots[slot as usize].l += value);
     }
 }

@@ -174,7 +174,7 @@ impl<'a> Wave<'a> {
         };
         self.hits.resize(batch.rays.len(), HitPacket::EMPTY);
         let start = Instant::now();
-        self.scene.accel().intersect(kind, &batch.rays, &mut self.hits, None);
+        self.scene.intersect(kind, &batch.rays, &mut self.hits);
         self.stats.backend_time += start.elapsed();
         if kind == RayKind::Bounce {
             self.stats.bounce_rays += batch.lanes.len() as u64;
@@ -203,10 +203,14 @@ impl<'a> Wave<'a> {
                     continue;
                 }
                 let ray = rays.get(i);
+                let surface = hits.get(i).map(|hit| {
+                    let behind = self.scene.interaction_behind(&ray, hit, hits.t[i]);
+                    behind.unwrap_or_else(|| surfaces.get(i, &ray, hit))
+                });
                 let vertex = Vertex {
                     lane,
                     ray: &ray,
-                    surface: hits.get(i).map(|hit| surfaces.get(i, &ray, hit)),
+                    surface,
                     numbers: &numbers.get(i),
                 };
                 estimator.shade(&mut stage, vertex);

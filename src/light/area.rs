@@ -22,6 +22,8 @@ pub struct AreaLight {
     motion: Option<Arc<MovingEmitter>>,
     radiance: Radiance,
     two_sided: bool,
+    /// How much of the surface there is: rays pass it with the probability 1 - alpha.
+    alpha: f32,
 }
 
 /// What each point of a surface emits.
@@ -61,6 +63,7 @@ impl AreaLight {
             motion: None,
             radiance: Radiance::Constant(radiance),
             two_sided,
+            alpha: 1.0,
         })
     }
 
@@ -78,6 +81,7 @@ impl AreaLight {
             motion: Some(Arc::new(emitter)),
             radiance: Radiance::Constant(radiance),
             two_sided,
+            alpha: 1.0,
         })
     }
 
@@ -108,6 +112,17 @@ impl AreaLight {
             })),
         };
         Self { radiance, ..self }
+    }
+
+    /// Lets rays pass with the probability 1 - `alpha`. As in pbrt-v4 a light whose alpha is 0 sends its light all the same, but only
+    /// light samples find it.
+    pub fn see_through(&mut self, alpha: f32) {
+        self.alpha = alpha;
+    }
+
+    /// Whether no ray meets it.
+    pub(super) fn is_delta(&self) -> bool {
+        self.alpha == 0.0
     }
 
     /// Its surface area, one side; at time 0 if it moves.
@@ -152,6 +167,12 @@ impl AreaLight {
         let sample = self.at(time)?.sample(from, u);
         let wi = (sample.p - from).try_normalize()?;
         let li = self.le(sample.ng, self.uv(sample.at, time), -wi, lambda);
+        // Rays find an invisible light never, and others as often as they do not pass them.
+        let (li, density) = if self.is_delta() {
+            (li * (1.0 / sample.pdf.0), LightDensity::Delta)
+        } else {
+            (li * self.alpha, LightDensity::Continuous(sample.pdf))
+        };
         (sample.pdf.0 > 0.0 && sample.pdf.0.is_finite() && !li.is_black()).then_some(LightSample {
             li,
             wi,
@@ -160,7 +181,7 @@ impl AreaLight {
                 error: sample.error,
                 ng: sample.ng,
             },
-            density: LightDensity::Continuous(sample.pdf),
+            density,
         })
     }
 

@@ -138,10 +138,11 @@ impl Light {
         }
     }
 
-    /// Whether only [`Light::sample_li`] finds it, and in one direction from each point.
+    /// Whether only [`Light::sample_li`] finds it: one without extent, or that rays pass.
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Area(_) | Self::Environment(_) => false,
+            Self::Area(light) => light.is_delta(),
+            Self::Environment(_) => false,
             Self::Point(_) | Self::Spot(_) | Self::Goniometric(_) | Self::Projection(_) | Self::Distant(_) => true,
         }
     }

@@ -61,9 +61,9 @@ pub(super) fn sample_visible_slope(w: Vec3, u: Vec2) -> Vec2 {
         for _ in 0..20 {
             let excess = integral(x) - wanted;
             if excess > 0.0 {
-                high = x
+                high = x;
             } else {
-                low = x
+                low = x;
             }
             let density = (cos - x * sin) * FRAC_1_SQRT_PI * (-x * x).exp();
             let newton = x - excess / density;
@@ -104,7 +104,7 @@ fn inverse_erf(y: f32) -> f32 {
     ];
     const FAR: [f32; 9] = [
         2.832_976_8,
-        1.001_674_1,
+        1.001_674,
         0.009_438_87,
         -0.007_622_461_3,
         0.005_739_507_7,

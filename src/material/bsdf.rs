@@ -1,6 +1,9 @@
 //! A BSDF at a point: one lobe in a frame, evaluated and sampled in world space.
 
-use super::{Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, OrenNayar, Principled, ThinDielectric};
+use super::sides::Sides;
+use super::{
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
@@ -22,6 +25,16 @@ pub enum Density {
     Continuous(SolidAnglePdf),
     /// One of finitely many, with this probability.
     Delta(f32),
+}
+
+impl Density {
+    /// That of each of `count` directions that share it.
+    fn divided(self, count: f32) -> Self {
+        match self {
+            Self::Continuous(pdf) => Self::Continuous(SolidAnglePdf(pdf.0 / count)),
+            Self::Delta(probability) => Self::Delta(probability / count),
+        }
+    }
 }
 
 /// A direction sampled in proportion to a BSDF.
@@ -128,6 +141,7 @@ pub enum Lobe<'a> {
     ThinDielectric(ThinDielectric),
     Layered(Layered),
     Principled(Principled<'a>),
+    Measured(Measured<'a>),
 }
 
 /// The scattering function at a point of a surface for the wavelengths of a path.
@@ -139,20 +153,47 @@ pub enum Lobe<'a> {
 pub struct Bsdf<'a> {
     frame: Frame,
     lobe: Lobe<'a>,
+    /// Where a map has bent the shading normal.
+    sides: Option<Sides>,
 }
 
 impl<'a> Bsdf<'a> {
     /// A lobe whose local z is the normal of `frame` and whose local x is its tangent.
     #[inline]
     pub fn new(frame: Frame, lobe: Lobe<'a>) -> Self {
-        Self { frame, lobe }
+        Self {
+            frame,
+            lobe,
+            sides: None,
+        }
+    }
+
+    /// This BSDF under a bent normal, where `ng` (world space, in the shading normal's hemisphere) says which side a direction is on.
+    #[must_use]
+    pub(super) fn with_sides_of(self, ng: Vec3) -> Self {
+        Self {
+            sides: Some(Sides::new(self.frame.to_local(ng))),
+            ..self
+        }
+    }
+
+    /// What a lobe's value is divided by where directions look alike; see `sides.rs`.
+    fn share(&self, sides: &Sides, wo: Vec3, wi: Vec3) -> f32 {
+        match &self.lobe {
+            Lobe::Diffuse(_) | Lobe::DiffuseTransmission(_) => 1.0,
+            _ => sides.count(wo).max(sides.count(wi)),
+        }
     }
 
     /// Whether it has only delta lobes, so that `f` is 0 for any two directions that were not sampled from it.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Principled(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
@@ -166,12 +207,18 @@ impl<'a> Bsdf<'a> {
         &self.frame
     }
 
-    /// Whether directions on the other side of the surface than `wo` may carry light, by other than delta lobes.
+    /// Whether directions on the other side of the shading normal than `wo` may carry light, by other than delta lobes.
     pub fn transmits(&self) -> bool {
-        match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) => false,
-            Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => true,
-        }
+        // Where a map has bent that normal, some of them reflect.
+        self.sides.is_some()
+            || match &self.lobe {
+                Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => {
+                    false
+                }
+                Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => {
+                    true
+                }
+            }
     }
 
     /// Whether it has delta lobes, perhaps beside others.
@@ -193,7 +240,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
-            | Lobe::Principled(_) => false,
+            | Lobe::Principled(_)
+            | Lobe::Measured(_) => false,
         }
     }
 
@@ -207,20 +255,28 @@ impl<'a> Bsdf<'a> {
     /// a surface could send light but is black, the value is 0 and the density is not.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<BsdfValue> {
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let (mut wo, mut wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         if wo.z == 0.0 || wi.z == 0.0 {
             return None;
         }
-        let value = match &self.lobe {
+        if let Some(sides) = &self.sides {
+            (wo, wi) = (sides.seen(wo), sides.seen(wi));
+        }
+        let mut value = match &self.lobe {
             Lobe::Diffuse(lobe) => lobe.eval(wo, wi),
             Lobe::OrenNayar(lobe) => lobe.eval(wo, wi),
             Lobe::DiffuseTransmission(lobe) => lobe.eval(wo, wi),
             Lobe::ThinDielectric(_) => None,
             Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
             Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
+            Lobe::Measured(lobe) => lobe.eval(wo, wi),
             Lobe::Conductor(lobe) => lobe.eval(wo, wi),
             Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }?;
+        if let Some(sides) = &self.sides {
+            value.f *= 1.0 / self.share(sides, wo, wi);
+            value.pdf /= sides.count(wi);
+        }
         Some(BsdfValue {
             f: value.f,
             pdf: SolidAnglePdf(value.pdf),
@@ -243,22 +299,35 @@ impl<'a> Bsdf<'a> {
     /// Samples a direction for `wo`: `u_lobe` chooses among lobes, `u` within one. `None` carries nothing.
     #[inline]
     pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
-        let wo = self.frame.to_local(wo);
+        let mut wo = self.frame.to_local(wo);
         if wo.z == 0.0 {
             return None;
         }
-        let local = match &self.lobe {
+        // The number that chooses among lobes first chooses between two directions that look alike.
+        let (mut u_lobe, mut other) = (u_lobe, false);
+        if let Some(sides) = &self.sides {
+            wo = sides.seen(wo);
+            other = u_lobe >= 0.5;
+            u_lobe = (2.0 * u_lobe).fract();
+        }
+        let mut local = match &self.lobe {
             Lobe::Diffuse(lobe) => lobe.sample_f(wo, u),
             Lobe::OrenNayar(lobe) => lobe.sample_f(wo, u),
             Lobe::DiffuseTransmission(lobe) => lobe.sample_f(wo, u_lobe, u),
             Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
             Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Lobe::Measured(lobe) => lobe.sample_f(wo, u),
             Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
             Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }?;
         if local.wi.z == 0.0 || local.value.is_black() {
             return None;
+        }
+        if let Some(sides) = &self.sides {
+            local.value *= 1.0 / self.share(sides, wo, local.wi);
+            local.density = local.density.divided(sides.count(local.wi));
+            local.wi = sides.real(local.wi, other)?;
         }
         Some(BsdfSample {
             value: local.value,

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
-    Principled, PrincipledParameters, PrincipledTables, Roughness, ThinDielectric,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
+    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
+    ThinDielectric,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -74,6 +75,10 @@ pub enum Material {
     Mix(Arc<MixMaterial>),
     /// By the parameters of artists.
     Principled(Arc<PrincipledMaterial>),
+    /// Another material under a bump or normal map.
+    Relief(Arc<Relief>),
+    /// By measurements.
+    Measured(Arc<MeasuredTables>),
 }
 
 /// A dielectric coat and what is under it.
@@ -141,7 +146,14 @@ impl Material {
     /// The BSDF at a surface point. A material whose index of refraction varies with wavelength ends the secondary wavelengths.
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
-        let (lobe, is_anisotropic) = self.lobe(si, lambda);
+        let material = match self {
+            Self::Mix(_) => self.chosen(si),
+            _ => self,
+        };
+        if let Self::Relief(relief) = material {
+            return relief.bsdf(si, lambda);
+        }
+        let (lobe, is_anisotropic) = material.lobe(si, lambda);
         let frame = if is_anisotropic {
             Frame::from_normal_tangent(si.ns, si.dpdu)
         } else {
@@ -221,11 +233,14 @@ impl Material {
                 (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
             }
             Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            // For those who want no more than the lobe: the normal has been bent before.
+            Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
                 let p = material.at(si, lambda);
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
+            Self::Measured(tables) => (Lobe::Measured(Measured::new(tables, lambda)), true),
         }
     }
 

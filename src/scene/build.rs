@@ -12,14 +12,15 @@ use super::{Scene, SceneOptions, Surface};
 use crate::accel;
 use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
-use crate::geometry::{Geometry, GeometryId, Group, Instance, WorldBuilder};
-use crate::light::{LightId, LightSampler};
+use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
+use crate::light::{Light, LightId, LightSampler};
 use crate::math::AnimatedTransform;
+use crate::texture::FloatTexture;
 
 /// What is collected while shapes and lights are gone through.
 struct SceneBuilder<'a> {
     desc: &'a SceneDesc,
-    spectra: SpectrumCompiler,
+    textures: TextureCompiler<'a>,
     world: WorldBuilder,
     surfaces: Vec<Surface>,
     lights: LightBuilder,
@@ -32,9 +33,10 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for what the description asks and cannot be had, [`Error::Backend`] if the backend fails.
     pub fn build(desc: &SceneDesc, options: &SceneOptions) -> Result<Self> {
+        let spectra = SpectrumCompiler { mode: options.color };
         let mut builder = SceneBuilder {
             desc,
-            spectra: SpectrumCompiler { mode: options.color },
+            textures: TextureCompiler::new(desc, spectra),
             world: WorldBuilder::default(),
             surfaces: Vec::new(),
             lights: LightBuilder::new(options.color),
@@ -50,8 +52,7 @@ impl Scene {
         if !builder.problems.is_empty() {
             return Err(Error::Scene(builder.problems));
         }
-        let mut textures = TextureCompiler::new(&desc.textures, builder.spectra);
-        let materials = compile_materials(&desc.materials, &mut textures);
+        let materials = compile_materials(&desc.materials, &mut builder.textures);
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
@@ -68,6 +69,7 @@ impl Scene {
             color: options.color,
             bounds,
             materials,
+            has_cutouts: builder.surfaces.iter().any(|surface| surface.alpha.is_some()),
             surfaces: builder.surfaces,
             lights: builder.lights.lights,
             environments: builder.lights.environments,
@@ -122,7 +124,7 @@ impl SceneBuilder<'_> {
 
     /// Adds a shape's geometry and its lights; one that moves gets a group of its own and the instance that moves it.
     fn add_shape(&mut self, shape: &ShapeDesc) -> Option<(GeometryId, Option<Instance>)> {
-        let placed = match place(shape) {
+        let mut placed = match place(shape) {
             Ok(placed) => placed,
             Err(message) => {
                 self.problem(shape.span, message);
@@ -133,10 +135,22 @@ impl SceneBuilder<'_> {
             None => Vec::new(),
             Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.as_ref()),
         };
+        let alpha = self.textures.float(&shape.alpha);
+        let alpha = match alpha {
+            FloatTexture::Constant(alpha) if alpha >= 1.0 => None,
+            alpha => Some(alpha),
+        };
+        if alpha.is_some() {
+            placed.geometry.opacity = Opacity::Filtered;
+        }
+        if let (Some(alpha), true) = (&alpha, shape.area_light.is_some()) {
+            self.see_through(shape.span, alpha, &lights);
+        }
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
             material: shape.material.0,
             lights,
+            alpha,
         });
         let instance = placed.motion.map(|world_from_object| Instance {
             group: self.world.add_group(Group {
@@ -147,6 +161,19 @@ impl SceneBuilder<'_> {
             mask: u32::MAX,
         });
         Some((id, instance))
+    }
+
+    /// Makes lights send what their shape's alpha leaves of it.
+    fn see_through(&mut self, span: Span, alpha: &FloatTexture, lights: &[Option<LightId>]) {
+        let FloatTexture::Constant(alpha) = *alpha else {
+            let message = "an area light on a shape whose `alpha` is a texture is not supported yet";
+            return self.problem(span, message);
+        };
+        for light in lights.iter().flatten() {
+            if let Light::Area(light) = &mut self.lights.lights[light.index()] {
+                light.see_through(alpha);
+            }
+        }
     }
 
     /// One light for each primitive that has an area.

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
 use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc};
-use crate::material::{Coat, ConductorIor, Material, MixMaterial, PrincipledMaterial, PrincipledTables};
+use crate::material::{
+    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PrincipledMaterial, PrincipledTables, Relief,
+};
 
 /// All materials of a scene, by their ids.
 pub(super) fn compile_materials(descs: &[MaterialDesc], textures: &mut TextureCompiler<'_>) -> Vec<Material> {
@@ -31,7 +33,13 @@ impl MaterialCompiler<'_, '_> {
         if let Some(material) = &self.done[index] {
             return material.clone();
         }
-        let material = self.compile(&self.descs[index].kind);
+        let desc = &self.descs[index];
+        let material = self.compile(&desc.kind);
+        let map = desc.relief.as_ref().and_then(|relief| self.textures.relief(relief));
+        let material = match map {
+            Some(map) => Material::Relief(Arc::new(Relief { map, material })),
+            None => material,
+        };
         self.done[index] = Some(material.clone());
         material
     }
@@ -87,6 +95,9 @@ impl MaterialCompiler<'_, '_> {
                 coat: Arc::new(coating(coat, self.textures)),
             },
             MaterialKind::Principled(desc) => Material::Principled(Arc::new(principled(desc, self.textures))),
+            MaterialKind::Measured(desc) => {
+                Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
+            }
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),

@@ -2,6 +2,7 @@
 //! outlives renders and serves many [`View`]s.
 
 mod build;
+mod cutouts;
 mod lights;
 mod materials;
 mod shapes;
@@ -17,6 +18,7 @@ use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::Bounds3;
 use crate::spectrum::ColorMode;
+use crate::texture::FloatTexture;
 
 pub use view::{View, ViewOverrides};
 
@@ -40,6 +42,8 @@ pub struct Scene {
     materials: Vec<Material>,
     /// By geometry.
     surfaces: Vec<Surface>,
+    /// Whether any of them has an alpha.
+    has_cutouts: bool,
     lights: Vec<Light>,
     /// Those that a ray meets when it leaves the scene.
     environments: Vec<LightId>,
@@ -55,6 +59,8 @@ struct Surface {
     material: u32,
     /// By primitive; empty if none emits.
     lights: Vec<Option<LightId>>,
+    /// How much of it there is, if rays pass some of it.
+    alpha: Option<FloatTexture>,
 }
 
 impl Scene {

@@ -5,14 +5,17 @@ use std::sync::Arc;
 
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
-    ClassedTexture, DistributionDesc, RoughnessDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind,
-    Textured,
+    ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, ReliefDesc,
+    RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
 };
 use crate::error::Span;
-use crate::material::{Distribution, Roughness};
-use crate::math::{DAffine3, DVec3};
-use crate::spectrum::CompiledSpectrum;
-use crate::texture::{Blend, BlendWeight, FloatTexture, SpectrumTexture};
+use crate::material::{Distribution, ReliefMap, Roughness};
+use crate::math::DAffine3;
+use crate::spectrum::{CompiledSpectrum, RgbKind, RgbSampler};
+use crate::texture::{
+    Bilerp, Blend, BlendWeight, Filter, FloatTexture, ImageTexture, Mapping2, Marble, MipMap, NoiseKind, NoiseTexture,
+    SpectrumTexture, TextureSpace, Wrap,
+};
 
 /// What the spectra of a texture are, as pbrt-v4 tells them apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,18 +29,22 @@ pub(super) enum SpectrumUse {
 /// Makes textures ready for rendering, each once for each use.
 pub(super) struct TextureCompiler<'a> {
     textures: &'a [TextureDesc],
+    images: &'a [ImageDesc],
     pub spectra: SpectrumCompiler,
     floats: HashMap<TextureId, FloatTexture>,
     of_spectra: HashMap<(TextureId, SpectrumUse), SpectrumTexture>,
+    maps: HashMap<(ImageId, Wrap, bool), Arc<MipMap>>,
 }
 
 impl<'a> TextureCompiler<'a> {
-    pub fn new(textures: &'a [TextureDesc], spectra: SpectrumCompiler) -> Self {
+    pub fn new(desc: &'a SceneDesc, spectra: SpectrumCompiler) -> Self {
         Self {
-            textures,
+            textures: &desc.textures,
+            images: &desc.images,
             spectra,
             floats: HashMap::new(),
             of_spectra: HashMap::new(),
+            maps: HashMap::new(),
         }
     }
 
@@ -54,6 +61,17 @@ impl<'a> TextureCompiler<'a> {
         match value {
             Textured::Value(desc) => self.compile(desc, usage).into(),
             Textured::Texture(id) => self.spectrum_texture(*id, usage),
+        }
+    }
+
+    /// What bends a surface's shading normals; `None` if nothing does.
+    pub fn relief(&mut self, desc: &ReliefDesc) -> Option<ReliefMap> {
+        match desc {
+            ReliefDesc::Displacement(id) => match self.float_texture(*id) {
+                FloatTexture::Constant(_) => None,
+                texture => Some(ReliefMap::Displacement(texture)),
+            },
+            ReliefDesc::Normals(id) => self.map(*id, Wrap::Repeat, false).map(ReliefMap::Normals),
         }
     }
 
@@ -80,8 +98,15 @@ impl<'a> TextureCompiler<'a> {
             return texture.clone();
         }
         let desc = &self.textures[id.0 as usize];
+        let space = &desc.world_from_texture;
         let texture = match &desc.kind {
-            ClassedTexture::Float(kind) => self.float_kind(kind, &desc.world_from_texture),
+            ClassedTexture::Float(kind) => match self.weighted(kind, space) {
+                Some((weight, textures)) => {
+                    let textures = textures.map(|texture| self.float(texture));
+                    FloatTexture::Blend(Arc::new(Blend { weight, textures }))
+                }
+                None => self.float_kind(kind, space),
+            },
             // The reader keeps the classes apart.
             ClassedTexture::Spectrum(_) => FloatTexture::Constant(1.0),
         };
@@ -89,44 +114,20 @@ impl<'a> TextureCompiler<'a> {
         texture
     }
 
-    fn float_kind(&mut self, kind: &TextureKind<f32>, world_from_texture: &DAffine3) -> FloatTexture {
-        match kind {
-            TextureKind::Constant(value) => FloatTexture::Constant(*value),
-            TextureKind::Scale { tex, scale } => match (self.float(tex), self.float(scale)) {
-                (FloatTexture::Constant(a), FloatTexture::Constant(b)) => FloatTexture::Constant(a * b),
-                (tex, scale) => FloatTexture::Scale(Arc::new([tex, scale])),
-            },
-            TextureKind::Mix { textures, amount } => {
-                self.float_blend(textures, |this| BlendWeight::Amount(this.float(amount)))
-            }
-            TextureKind::DirectionMix {
-                textures: [along, across],
-                direction,
-            } => {
-                // The weight counts the texture seen along the direction, which is the first in the file.
-                let textures = [across.clone(), along.clone()];
-                self.float_blend(&textures, |_| direction_weight(world_from_texture, *direction))
-            }
-        }
-    }
-
-    fn float_blend(
-        &mut self,
-        textures: &[Textured<f32>; 2],
-        weight: impl FnOnce(&mut Self) -> BlendWeight,
-    ) -> FloatTexture {
-        let textures = textures.each_ref().map(|texture| self.float(texture));
-        let weight = weight(self);
-        FloatTexture::Blend(Arc::new(Blend { weight, textures }))
-    }
-
     fn spectrum_texture(&mut self, id: TextureId, usage: SpectrumUse) -> SpectrumTexture {
         if let Some(texture) = self.of_spectra.get(&(id, usage)) {
             return texture.clone();
         }
         let desc = &self.textures[id.0 as usize];
+        let space = &desc.world_from_texture;
         let texture = match &desc.kind {
-            ClassedTexture::Spectrum(kind) => self.spectrum_kind(kind, usage, &desc.world_from_texture),
+            ClassedTexture::Spectrum(kind) => match self.weighted(kind, space) {
+                Some((weight, textures)) => {
+                    let textures = textures.map(|texture| self.spectrum(texture, usage));
+                    SpectrumTexture::Blend(Arc::new(Blend { weight, textures }))
+                }
+                None => self.spectrum_kind(kind, usage, space, desc.span),
+            },
             // The reader keeps the classes apart.
             ClassedTexture::Float(_) => self.compile(&white(desc.span), usage).into(),
         };
@@ -134,12 +135,80 @@ impl<'a> TextureCompiler<'a> {
         texture
     }
 
+    /// The weight and the textures of a kind that is between two others.
+    fn weighted<'k, V>(
+        &mut self,
+        kind: &'k TextureKind<V>,
+        space: &DAffine3,
+    ) -> Option<(BlendWeight, [&'k Textured<V>; 2])> {
+        Some(match kind {
+            TextureKind::Mix { textures, amount } => (BlendWeight::Amount(self.float(amount)), textures.each_ref()),
+            TextureKind::DirectionMix {
+                textures: [along, across],
+                direction,
+            } => {
+                let direction = space.transform_vector3(*direction).normalize_or_zero().as_vec3();
+                // The weight is that of the texture seen along the direction, which is the first in the file.
+                (BlendWeight::Direction(direction), [across, along])
+            }
+            TextureKind::Checkerboard2 { textures, mapping } => (
+                BlendWeight::Checkerboard2(mapping2(mapping, space)),
+                textures.each_ref(),
+            ),
+            TextureKind::Checkerboard3 { textures } => (
+                BlendWeight::Checkerboard3(TextureSpace::new(space)),
+                textures.each_ref(),
+            ),
+            TextureKind::Dots {
+                inside,
+                outside,
+                mapping,
+            } => (BlendWeight::Dots(mapping2(mapping, space)), [outside, inside]),
+            _ => return None,
+        })
+    }
+
+    fn float_kind(&mut self, kind: &TextureKind<f32>, space: &DAffine3) -> FloatTexture {
+        let noise = |kind| {
+            let space = TextureSpace::new(space);
+            FloatTexture::Noise(Arc::new(NoiseTexture { space, kind }))
+        };
+        match kind {
+            TextureKind::Scale { tex, scale } => match (self.float(tex), self.float(scale)) {
+                (FloatTexture::Constant(a), FloatTexture::Constant(b)) => FloatTexture::Constant(a * b),
+                (tex, scale) => FloatTexture::Scale(Arc::new([tex, scale])),
+            },
+            TextureKind::Bilerp { corners, mapping } => FloatTexture::Bilerp(Arc::new(Bilerp {
+                mapping: mapping2(mapping, space),
+                corners: *corners,
+            })),
+            TextureKind::Image(desc) => match self.image(desc, space, true) {
+                Some(image) => FloatTexture::Image(Arc::new(image)),
+                None => FloatTexture::Constant(1.0),
+            },
+            TextureKind::Fbm(desc) => noise(NoiseKind::Fbm {
+                octaves: desc.octaves,
+                roughness: desc.roughness,
+            }),
+            TextureKind::Wrinkled(desc) => noise(NoiseKind::Wrinkled {
+                octaves: desc.octaves,
+                roughness: desc.roughness,
+            }),
+            TextureKind::Windy => noise(NoiseKind::Windy),
+            TextureKind::Constant(value) => FloatTexture::Constant(*value),
+            // Those between two others are not made here, and marble is of spectra only.
+            _ => FloatTexture::Constant(1.0),
+        }
+    }
+
     fn spectrum_kind(
         &mut self,
         kind: &TextureKind<SpectrumDesc>,
         usage: SpectrumUse,
-        world_from_texture: &DAffine3,
+        space: &DAffine3,
+        span: Span,
     ) -> SpectrumTexture {
+        let rgb = |kind| RgbSampler::new(self.spectra.mode, kind);
         match kind {
             TextureKind::Constant(value) => self.compile(value, usage).into(),
             TextureKind::Scale { tex, scale } => match (self.spectrum(tex, usage), self.float(scale)) {
@@ -151,28 +220,84 @@ impl<'a> TextureCompiler<'a> {
                 }
                 factors => SpectrumTexture::Scale(Arc::new(factors)),
             },
-            TextureKind::Mix { textures, amount } => {
-                self.spectrum_blend(textures, usage, |this| BlendWeight::Amount(this.float(amount)))
+            TextureKind::Bilerp { corners, mapping } => SpectrumTexture::Bilerp(Arc::new(Bilerp {
+                mapping: mapping2(mapping, space),
+                corners: corners.each_ref().map(|corner| self.compile(corner, usage)),
+            })),
+            TextureKind::Image(desc) => {
+                let rgb = rgb(match usage {
+                    SpectrumUse::Albedo => RgbKind::Albedo,
+                    SpectrumUse::Unbounded => RgbKind::Unbounded,
+                });
+                match self.image(desc, space, false) {
+                    Some(image) => SpectrumTexture::Image(Arc::new(image), rgb),
+                    None => self.compile(&white(span), usage).into(),
+                }
             }
-            TextureKind::DirectionMix {
-                textures: [along, across],
-                direction,
+            TextureKind::Marble {
+                octaves,
+                scale,
+                variation,
             } => {
-                let textures = [across.clone(), along.clone()];
-                self.spectrum_blend(&textures, usage, |_| direction_weight(world_from_texture, *direction))
+                let marble = Marble {
+                    space: TextureSpace::new(space),
+                    octaves: octaves.octaves,
+                    roughness: octaves.roughness,
+                    scale: *scale,
+                    variation: *variation,
+                };
+                SpectrumTexture::Marble(Arc::new(marble), rgb(RgbKind::Albedo))
             }
+            // Those between two others are not made here, and the rest is of numbers only.
+            _ => self.compile(&white(span), usage).into(),
         }
     }
 
-    fn spectrum_blend(
-        &mut self,
-        textures: &[Textured<SpectrumDesc>; 2],
-        usage: SpectrumUse,
-        weight: impl FnOnce(&mut Self) -> BlendWeight,
-    ) -> SpectrumTexture {
-        let textures = textures.each_ref().map(|texture| self.spectrum(texture, usage));
-        let weight = weight(self);
-        SpectrumTexture::Blend(Arc::new(Blend { weight, textures }))
+    /// An image at all scales, made once. `None` if it has no colour, which the reader has seen to.
+    fn map(&mut self, id: ImageId, wrap: Wrap, grey: bool) -> Option<Arc<MipMap>> {
+        let key = (id, wrap, grey);
+        if let Some(map) = self.maps.get(&key) {
+            return Some(Arc::clone(map));
+        }
+        let map = Arc::new(MipMap::new(&self.images[id.0 as usize].image, wrap, grey)?);
+        self.maps.insert(key, Arc::clone(&map));
+        Some(map)
+    }
+
+    /// `None` if the image has no colour, which the reader has seen to.
+    fn image(&mut self, desc: &ImageMapDesc, space: &DAffine3, grey: bool) -> Option<ImageTexture> {
+        let wrap = match desc.wrap {
+            WrapDesc::Repeat => Wrap::Repeat,
+            WrapDesc::Black => Wrap::Black,
+            WrapDesc::Clamp => Wrap::Clamp,
+            WrapDesc::OctahedralSphere => Wrap::OctahedralSphere,
+        };
+        Some(ImageTexture {
+            image: self.map(desc.image, wrap, grey)?,
+            mapping: mapping2(&desc.mapping, space),
+            filter: match desc.filter {
+                ImageFilterDesc::Point => Filter::Point,
+                ImageFilterDesc::Bilinear => Filter::Bilinear,
+                ImageFilterDesc::Trilinear => Filter::Trilinear,
+                ImageFilterDesc::Ewa { max_anisotropy } => Filter::Ewa { max_anisotropy },
+            },
+            scale: desc.scale,
+            invert: desc.invert,
+        })
+    }
+}
+
+fn mapping2(desc: &MappingDesc, world_from_texture: &DAffine3) -> Mapping2 {
+    let space = || TextureSpace::new(world_from_texture);
+    match *desc {
+        MappingDesc::Uv { scale, delta } => Mapping2::Uv { scale, delta },
+        MappingDesc::Spherical => Mapping2::Spherical(space()),
+        MappingDesc::Cylindrical => Mapping2::Cylindrical(space()),
+        MappingDesc::Planar { vectors, delta } => Mapping2::Planar {
+            space: space(),
+            vectors,
+            delta,
+        },
     }
 }
 
@@ -194,9 +319,4 @@ fn at_most_one(desc: &SpectrumDesc) -> SpectrumDesc {
         SpectrumValue::Named(_) | SpectrumValue::Blackbody(_) => desc.value.clone(),
     };
     SpectrumDesc { value, ..*desc }
-}
-
-fn direction_weight(world_from_texture: &DAffine3, direction: DVec3) -> BlendWeight {
-    let direction = world_from_texture.transform_vector3(direction);
-    BlendWeight::Direction(direction.normalize_or_zero().as_vec3())
 }

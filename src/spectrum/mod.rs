@@ -9,14 +9,17 @@ pub mod cie;
 mod compiled;
 mod description;
 mod named;
+mod rgb;
 mod rgb2spec;
 mod rgb_emission;
 mod sampled;
+mod table;
 mod wavelengths;
 
 pub use compiled::CompiledSpectrum;
 pub use description::{Outside, Spectrum};
 pub use named::named_spectra;
+pub use rgb::{RgbKind, RgbSampler};
 pub use rgb_emission::{EmissionPixel, RgbEmission, rgb_luminance};
 pub use sampled::{LANES, SampledSpectrum};
 pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};

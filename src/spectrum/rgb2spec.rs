@@ -49,7 +49,7 @@ impl SigmoidPolynomial {
 }
 
 /// For each nm what a reflectance of 1 there, under D65, adds to linear sRGB.
-static RESPONSE: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
+pub(super) static RESPONSE: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
     let d65 = named::d65();
     let total = cie::integrate_y(|nm| d65.at(nm));
     (0..ENTRIES)
@@ -63,10 +63,10 @@ static RESPONSE: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
 });
 
 /// The colour of a polynomial's reflectance and its derivative by the coefficients.
-fn colour(coefficients: DVec3) -> (DVec3, DMat3) {
+fn colour(response: &[(f64, DVec3)], coefficients: DVec3) -> (DVec3, DMat3) {
     let mut rgb = DVec3::ZERO;
     let mut jacobian = DMat3::ZERO;
-    for &(t, response) in RESPONSE.iter() {
+    for &(t, response) in response {
         let powers = DVec3::new(t * t, t, 1.0);
         let x = powers.dot(coefficients);
         let inverse_root = 1.0 / (1.0 + x * x).sqrt();
@@ -91,12 +91,17 @@ const SMALLEST_STEP: f64 = 1e-5;
 /// Newton's method converges, and inside the cube there is a solution all along.
 pub(super) fn solve(rgb: [f32; 3]) -> SigmoidPolynomial {
     let goal = DVec3::from(rgb.map(f64::from));
+    SigmoidPolynomial(solve_with(&RESPONSE, goal).as_vec3().into())
+}
+
+/// [`solve`] for some response.
+pub(super) fn solve_with(response: &[(f64, DVec3)], goal: DVec3) -> DVec3 {
     let grey = DVec3::splat(0.5);
     let (mut done, mut step) = (0.0, 1.0_f64);
     let mut coefficients = DVec3::ZERO;
     while done < 1.0 && step > SMALLEST_STEP {
         let next = (done + step).min(1.0);
-        match newton(grey.lerp(goal, next), coefficients) {
+        match newton(response, grey.lerp(goal, next), coefficients) {
             Some(solution) => {
                 coefficients = solution;
                 done = next;
@@ -105,14 +110,14 @@ pub(super) fn solve(rgb: [f32; 3]) -> SigmoidPolynomial {
             None => step *= 0.5,
         }
     }
-    SigmoidPolynomial(coefficients.as_vec3().into())
+    coefficients
 }
 
 /// Newton's method for one colour; `None` if it does not converge in a few steps.
-fn newton(goal: DVec3, start: DVec3) -> Option<DVec3> {
+pub(super) fn newton(response: &[(f64, DVec3)], goal: DVec3, start: DVec3) -> Option<DVec3> {
     let mut coefficients = start;
     for _ in 0..12 {
-        let (rgb, jacobian) = colour(coefficients);
+        let (rgb, jacobian) = colour(response, coefficients);
         let residual = goal - rgb;
         if residual.abs().max_element() < TOLERANCE {
             return Some(coefficients);

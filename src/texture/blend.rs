@@ -1,6 +1,7 @@
 //! Textures between two others: `mix`, `directionmix`, `checkerboard` and `dots` differ in where there is how much of which.
 
-use super::{FloatTexture, TextureContext};
+use super::procedural::{checkerboard2, checkerboard3, is_in_dot};
+use super::{FloatTexture, Mapping2, TextureContext, TextureSpace};
 use crate::math::Vec3;
 
 /// The first texture where the weight is 0, the second where it is 1, and between them a mean.
@@ -20,6 +21,12 @@ pub enum BlendWeight {
     /// |cos| of the geometric normal to this unit vector, world space (`directionmix`: the texture that is seen along it is the
     /// second here).
     Direction(Vec3),
+    /// A filtered checkerboard of unit squares.
+    Checkerboard2(Mapping2),
+    /// A filtered checkerboard of unit cubes.
+    Checkerboard3(TextureSpace),
+    /// Inside of dots.
+    Dots(Mapping2),
 }
 
 impl BlendWeight {
@@ -27,6 +34,9 @@ impl BlendWeight {
         match self {
             Self::Amount(texture) => texture.evaluate(context),
             Self::Direction(direction) => context.n.dot(*direction).abs(),
+            Self::Checkerboard2(mapping) => checkerboard2(&mapping.map(context)),
+            Self::Checkerboard3(space) => checkerboard3(&space.map(context)),
+            Self::Dots(mapping) => f32::from(u8::from(is_in_dot(mapping.map(context).st))),
         }
     }
 }

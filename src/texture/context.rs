@@ -52,9 +52,9 @@ impl TextureContext {
         context
     }
 
-    /// The context a little beside the point: by `step` times dpdu in space and so much in u, or the same for v.
+    /// The context a little beside the point, by `dp` in space and by `duv` in texture coordinates.
     #[must_use]
-    pub(super) fn moved(&self, dp: Vec3, duv: Vec2) -> Self {
+    pub fn moved(&self, dp: Vec3, duv: Vec2) -> Self {
         Self {
             p: self.p + dp,
             uv: self.uv + duv,

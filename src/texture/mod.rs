@@ -3,16 +3,28 @@
 //! A texture is asked with a [`TextureContext`], which says how much of the surface one sample stands for, so that it can filter
 //! itself. A [`FloatTexture::Constant`] or [`SpectrumTexture::Constant`] is answered without one.
 
+mod bilerp;
 mod blend;
 mod context;
+mod image;
+mod mapping;
+mod mipmap;
+mod noise;
+mod procedural;
 
+pub use bilerp::Bilerp;
 pub use blend::{Blend, BlendWeight};
 pub use context::TextureContext;
+pub use image::ImageTexture;
+pub use mapping::{Coordinates2, Coordinates3, Mapping2, TextureSpace};
+pub use mipmap::{Filter, MipMap, Wrap};
+pub use noise::{fbm, noise, turbulence};
+pub use procedural::{Marble, NoiseKind, NoiseTexture};
 
 use std::sync::Arc;
 
 use crate::geometry::SurfaceInteraction;
-use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+use crate::spectrum::{CompiledSpectrum, RgbSampler, SampledSpectrum, Wavelengths};
 
 /// A number that may vary over a surface. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -23,6 +35,12 @@ pub enum FloatTexture {
     Scale(Arc<[FloatTexture; 2]>),
     /// Between two others.
     Blend(Arc<Blend<FloatTexture>>),
+    /// Between four numbers.
+    Bilerp(Arc<Bilerp<f32>>),
+    /// The first channel of an image.
+    Image(Arc<ImageTexture>),
+    /// Made of noise.
+    Noise(Arc<NoiseTexture>),
 }
 
 /// A spectrum that may vary over a surface. Cheap to clone.
@@ -34,6 +52,12 @@ pub enum SpectrumTexture {
     Scale(Arc<(SpectrumTexture, FloatTexture)>),
     /// Between two others.
     Blend(Arc<Blend<SpectrumTexture>>),
+    /// Between four spectra.
+    Bilerp(Arc<Bilerp<CompiledSpectrum>>),
+    /// The colours of an image.
+    Image(Arc<ImageTexture>, RgbSampler),
+    /// Layers of stone.
+    Marble(Arc<Marble>, RgbSampler),
 }
 
 impl FloatTexture {
@@ -65,6 +89,11 @@ impl FloatTexture {
                 |texture| texture.evaluate(context),
                 |a, b, t| a * (1.0 - t) + b * t,
             ),
+            Self::Bilerp(corners) => {
+                corners.evaluate(context, 0.0, |value| *value, |sum, value, weight| sum + value * weight)
+            }
+            Self::Image(texture) => texture.evaluate(context),
+            Self::Noise(texture) => texture.evaluate(context),
         }
     }
 }
@@ -109,6 +138,14 @@ impl SpectrumTexture {
                 |texture| texture.evaluate(context, lambda),
                 |a, b, t| a * (1.0 - t) + b * t,
             ),
+            Self::Bilerp(corners) => corners.evaluate(
+                context,
+                SampledSpectrum::ZERO,
+                |spectrum| spectrum.sample(lambda),
+                |sum, value, weight| sum + value * weight,
+            ),
+            Self::Image(texture, rgb) => rgb.sample(texture.evaluate_rgb(context), lambda),
+            Self::Marble(texture, rgb) => rgb.sample(texture.evaluate(context), lambda),
         }
     }
 }

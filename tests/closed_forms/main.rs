@@ -6,6 +6,7 @@
 mod common;
 
 mod cameras;
+mod cutouts;
 mod emission;
 mod enclosures;
 mod interfaces;

@@ -680,3 +680,84 @@ fn a_material_may_name_a_texture_that_is_defined_later() {
     let later = "WorldBegin Material \"diffuse\" \"texture reflectance\" \"a\" Texture \"a\" \"spectrum\" \"constant\"";
     assert_eq!(scene(later).textures[0].name, "a");
 }
+
+#[test]
+fn image_textures() {
+    let cases: [Case; 9] = [
+        (
+            "WorldBegin Texture \"a\" \"float\" @\"imagemap\"",
+            "has no `\"string filename\"`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string filename\" @\"no-such.png\"",
+            "cannot read the image",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"x.png\" \"string filter\" @\"ewa\"",
+            "`filter` is one of point, bilinear, trilinear, EWA, not `ewa`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"x.png\" \"string wrap\" @\"repeet\"",
+            "`wrap` is one of",
+            "`repeat`",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string encoding\" @\"gamma 0\" \"string filename\" \"x.png\"",
+            "`gamma` with a positive exponent",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"float maxanisotropy\" @0.5 \"string filename\" \"x.png\"",
+            "must be 1 or more",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" \"checkerboard\" \"integer dimension\" @4",
+            "must be 2 to 3",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"spectrum\" @\"fbm\"",
+            "unknown spectrum texture `fbm`",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"sphere\" \"float alpha\" @1.5",
+            "`alpha` is 1.5, it must be between 0 and 1",
+            "",
+        ),
+    ];
+    for case @ (marked, message, _) in &cases {
+        if message.contains("one of") || message.contains("gamma") || message.contains("1 or more") {
+            // The file is not there either.
+            let (text, _) = (marked.replace('@', ""), ());
+            assert!(errors(&text).iter().any(|e| e.message.contains(message)), "{marked}");
+        } else {
+            check(case);
+        }
+    }
+}
+
+/// Every parameter of the tables is one that the reader asks for: with a type that none has, it says so.
+#[test]
+fn the_tables_of_textures_are_what_is_read() {
+    for entry in &lucerna::desc::TEXTURES {
+        for class in entry.classes {
+            for parameter in entry.parameters {
+                let text = format!(
+                    "WorldBegin Texture \"a\" \"{}\" \"{}\" \"normal {}\" [0 0 1]",
+                    class.name(),
+                    entry.name,
+                    parameter.name
+                );
+                let found = errors(&text);
+                let expected = format!("`{}` has the type `normal`", parameter.name);
+                assert!(found.iter().any(|e| e.message.contains(&expected)), "{text}: {found:?}");
+                assert!(!parameter.doc.is_empty() && !parameter.kind.range_text().is_empty());
+            }
+        }
+    }
+}

@@ -269,7 +269,7 @@ fn attribute_sets_defaults_for_what_follows() {
         AttributeBegin
             Attribute "shape" "float radius" 3 "float alpha" 1
             Attribute "light" "float scale" 4
-            Attribute "material" "rgb reflectance" [.1 .1 .1] "float roughness" .2
+            Attribute "material" "rgb reflectance" [.1 .1 .1] "float uroughness" .2
             Shape "sphere"
             Shape "sphere" "float radius" 2
             Attribute "shape" "float radius" 5

@@ -160,7 +160,7 @@ fn values_of_white_surfaces_integrate_to_one() {
     let whites = whites();
     for white in &whites {
         if upright(white.lobe).is_estimate() {
-            furnace(white, whites.len(), (0.06, 0.02), |bsdf, proposal, wo, seed| {
+            furnace(white, whites.len(), (0.08, 0.025), |bsdf, proposal, wo, seed| {
                 integrated(bsdf, proposal, wo, seed, 16_384 * effort(8))
             });
             continue;

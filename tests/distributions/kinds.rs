@@ -188,9 +188,9 @@ const ALL: PrincipledParameters = PrincipledParameters {
 /// The cosine-weighted integral of f over all directions: the midpoint rule in azimuth, of a periodic function, and Gauss's rule
 /// of two points in the polar angle.
 pub fn integral(bsdf: &Bsdf<'_>, wo: DVec3, mode: TransportMode) -> f64 {
-    const STEPS: usize = 400;
+    const STEPS: usize = 250;
     // Towards grazing angles the half vector turns ever faster with the azimuth.
-    let azimuths = if wo.z.abs() < 0.1 { 3600 } else { 600 };
+    let azimuths = if wo.z.abs() < 0.1 { 2400 } else { 360 };
     let mut sum = 0.0;
     for i in 0..2 * STEPS {
         let node = if i % 2 == 0 { -1.0 } else { 1.0 } / 3.0_f64.sqrt();

@@ -10,6 +10,7 @@ mod environments;
 mod kinds;
 mod light_samplers;
 mod lights;
+mod measured;
 
 use glam::Vec2;
 

@@ -10,7 +10,7 @@ use super::reader::{ParamReader, unknown_type};
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
 use super::{light, material, shape, texture};
-use crate::desc::{MotionDesc, TextureClass};
+use crate::desc::{MotionDesc, TextureClass, Textured};
 use crate::error::Span;
 
 pub(super) use super::options::OptionKind;
@@ -244,8 +244,8 @@ impl Builder {
             "LightSource" => self.world.lights.extend(light::read(reader, &name, self.state.ctm)),
             "AreaLightSource" => self.state.area_light = light::read_area(reader, &name).map(Arc::new),
             _ => {
-                if let Some(kind) = shape::read(reader, &name, &mut self.world.meshes) {
-                    self.shape(kind, name_span);
+                if let Some((kind, alpha)) = shape::read(reader, &name, &mut self.world.meshes) {
+                    self.shape(kind, alpha, name_span);
                 }
             }
         }
@@ -285,7 +285,7 @@ impl Builder {
         texture::read(reader, name, class, kind, self.state.ctm.start);
     }
 
-    fn shape(&mut self, kind: shape::RawKind, span: Span) {
+    fn shape(&mut self, kind: shape::RawKind, alpha: Textured<f32>, span: Span) {
         let in_object = self.world.is_in_object();
         let mut area_light = self.state.area_light.clone();
         if in_object && area_light.is_some() {
@@ -303,6 +303,7 @@ impl Builder {
             world_from_object: self.state.ctm,
             reverse_orientation: self.state.reverse_orientation,
             material: self.state.material,
+            alpha,
             area_light,
         });
     }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::images::PendingImages;
 use super::report::Report;
 use super::texture_names::Textures;
 use crate::desc::{ParseOptions, bytes};
@@ -14,6 +15,8 @@ pub(super) struct Context {
     pub report: Report,
     /// The textures so far.
     pub textures: Textures,
+    /// The image files named so far.
+    pub images: PendingImages,
     /// Where the main file is.
     directory: PathBuf,
     hasher: blake3::Hasher,
@@ -40,6 +43,7 @@ impl Context {
         Self {
             report: Report::new(options),
             textures: Textures::default(),
+            images: PendingImages::default(),
             directory: directory.to_owned(),
             hasher: blake3::Hasher::new(),
             defaults: Vec::new(),

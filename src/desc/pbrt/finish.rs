@@ -8,8 +8,8 @@ use super::builder::Builder;
 use super::files::Context;
 use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
-use super::suggest;
 use super::world::{RawShape, Slot, World, default_material};
+use super::{images, suggest};
 use crate::desc::{
     InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc,
     ShapeKind, ply,
@@ -41,6 +41,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     } = world;
     let (materials, ids) = resolve_materials(materials.into_slots(), &mut context.report);
     let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
+    let images = images::read(&std::mem::take(&mut context.images), &mut context);
     let meshes = read_meshes(&meshes, &mut context);
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));
@@ -63,6 +64,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
         integrator: options.integrator(),
         materials,
         textures,
+        images,
         shapes,
         objects,
         instances,
@@ -101,7 +103,7 @@ fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> (Vec<MaterialDesc
     let mut undefined = Vec::new();
     for slot in slots {
         let material = match slot {
-            Slot::Surface(material) => material,
+            Slot::Surface(material) => *material,
             Slot::Interface => {
                 ids.push(None);
                 continue;
@@ -206,6 +208,7 @@ fn resolve_shape(
         world_from_object: shape.world_from_object,
         reverse_orientation: shape.reverse_orientation,
         material,
+        alpha: shape.alpha,
         area_light: shape.area_light.map(|light| (*light).clone()),
     })
 }

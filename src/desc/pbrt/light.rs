@@ -28,14 +28,14 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: Mo
         }
         "spot" => (Some(spot(r)), r.emission(&INTENSITY), &POWER),
         "goniometric" => {
-            let image = r.image(&GONIOMETRIC_IMAGE, true, |[width, height]| {
+            let image = r.light_image(&GONIOMETRIC_IMAGE, true, |[width, height]| {
                 (width != height).then_some("square (equal-area octahedral)")
             });
             let kind = image.map(|image| LightKind::Goniometric { image });
             (kind, r.emission(&INTENSITY), &POWER)
         }
         "projection" => {
-            let image = r.image(&PROJECTION_IMAGE, true, |_| None);
+            let image = r.light_image(&PROJECTION_IMAGE, true, |_| None);
             let fov = r.float_by(&FOV);
             (image.map(|image| LightKind::Projection { image, fov }), None, &POWER)
         }
@@ -90,7 +90,7 @@ pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaL
         return None;
     }
     let l = reader.emission(&RADIANCE);
-    let image = reader.image(&AREA_IMAGE, false, |_| None);
+    let image = reader.light_image(&AREA_IMAGE, false, |_| None);
     reader.one_of(&RADIANCE, &AREA_IMAGE);
     let light = AreaLightDesc {
         span,
@@ -131,7 +131,7 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
 
 fn infinite(reader: &mut ParamReader<'_>) -> (Option<LightKind>, Option<SpectrumDesc>) {
     let spectrum = reader.emission(&RADIANCE);
-    let image = reader.image(&INFINITE_IMAGE, false, |[width, height]| {
+    let image = reader.light_image(&INFINITE_IMAGE, false, |[width, height]| {
         let known = SphereMap::of_size(width, height).is_some();
         (!known).then_some("square (equal-area octahedral) or twice as wide as high (latitude and longitude)")
     });
@@ -196,7 +196,7 @@ impl ParamReader<'_> {
     }
 
     /// The image in a file, finite and in colour; `refuse` says what its width and height should be if they will not do.
-    fn image(
+    fn light_image(
         &mut self,
         parameter: &'static Parameter,
         required: bool,

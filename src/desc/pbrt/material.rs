@@ -1,16 +1,19 @@
 //! `Material` and `MakeNamedMaterial`.
 
+use std::sync::Arc;
+
 use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
 use super::world::{Materials, default_material};
 use crate::desc::material_kinds as kinds;
 use crate::desc::{
-    CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, Parameter,
-    PrincipledDesc, RoughnessDesc, Textured,
+    CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, MeasuredDesc,
+    Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
 };
 use crate::error::Span;
+use crate::image_io::Encoding;
 
-const LATER: [&str; 3] = ["hair", "measured", "subsurface"];
+const LATER: [&str; 2] = ["hair", "subsurface"];
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
 pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> Option<MaterialDesc> {
@@ -40,11 +43,37 @@ pub(super) fn read(
         return unknown(reader, kind, span);
     };
     let kind = read_kind(&mut reader, materials, entry.name);
-    if kind.is_some() {
-        reader.unsupported(&["displacement", "normalmap"]);
-    }
+    let can_have_relief = entry
+        .parameters
+        .iter()
+        .any(|parameter| parameter.name == kinds::DISPLACEMENT.name);
+    let relief = if can_have_relief { relief(&mut reader) } else { None };
     reader.finish();
-    kind.map(|kind| MaterialDesc { name: None, kind, span })
+    kind.map(|kind| MaterialDesc {
+        name: None,
+        kind,
+        relief,
+        span,
+    })
+}
+
+/// A normal map or a displacement; as in pbrt-v4 the former counts if both are given.
+fn relief(reader: &mut ParamReader<'_>) -> Option<ReliefDesc> {
+    let displacement = match reader.float_textured(kinds::DISPLACEMENT.name) {
+        Some(Textured::Texture(id)) => Some(ReliefDesc::Displacement(id)),
+        // The same height everywhere bends nothing.
+        Some(Textured::Value(_)) | None => None,
+    };
+    if !reader.has(kinds::NORMAL_MAP.name) {
+        return displacement;
+    }
+    if displacement.is_some() {
+        let span = reader.span_of(kinds::DISPLACEMENT.name);
+        let message = "`displacement` has no effect: there is a normal map";
+        reader.report().warning(span, message);
+    }
+    let image = reader.image(kinds::NORMAL_MAP.name, Encoding::Linear)?;
+    Some(ReliefDesc::Normals(image))
 }
 
 fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<MaterialDesc> {
@@ -103,6 +132,10 @@ fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str
         },
         "mix" => mix(reader, materials),
         "principled" => MaterialKind::Principled(principled(reader)),
+        "measured" => match measured(reader) {
+            Some(desc) => MaterialKind::Measured(Arc::new(desc)),
+            None => default_material(reader.span).kind,
+        },
         _ => return None,
     })
 }
@@ -219,5 +252,25 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         } else {
             eta as f32
         },
+    }
+}
+
+fn measured(reader: &mut ParamReader<'_>) -> Option<MeasuredDesc> {
+    let name = kinds::MEASURED_FILE.name;
+    if !reader.has(name) {
+        let span = reader.span;
+        let message = "a measured material names its file: `\"string filename\" \"metal.bsdf\"`";
+        reader.report().error(span, message);
+    }
+    let (file, span) = reader.string(name)?;
+    let path = reader.context.resolve(&file, span);
+    let read = reader.context.read_text(&path).map_err(|e| e.to_string());
+    match read.and_then(|bytes| rgl::parse(&bytes)) {
+        Ok(desc) => Some(desc),
+        Err(problem) => {
+            let message = format!("cannot read the measured material {}: {problem}", path.display());
+            reader.report().error(span, message);
+            None
+        }
     }
 }

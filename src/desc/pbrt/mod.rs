@@ -12,6 +12,7 @@ mod directives;
 mod files;
 mod film;
 mod finish;
+mod images;
 mod input;
 mod integrator;
 mod light;

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use super::params::{Param, ParamType, Values, value_span};
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::MeshDesc;
+use crate::desc::{MeshDesc, Textured};
 use crate::error::Span;
 
 const KNOWN: [&str; 3] = ["trianglemesh", "plymesh", "sphere"];
@@ -42,8 +42,12 @@ impl PendingMeshes {
     }
 }
 
-/// Reads a shape; none if there is no such shape to be read or something essential is wrong with it.
-pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, meshes: &mut PendingMeshes) -> Option<RawKind> {
+/// Reads a shape and its alpha; none if there is no such shape to be read or something essential is wrong with it.
+pub(super) fn read(
+    mut reader: ParamReader<'_>,
+    kind: &str,
+    meshes: &mut PendingMeshes,
+) -> Option<(RawKind, Textured<f32>)> {
     let shape = match kind {
         "trianglemesh" => triangle_mesh(&mut reader).map(|mesh| RawKind::Mesh(Arc::new(mesh))),
         "plymesh" => ply_mesh(&mut reader, meshes),
@@ -55,18 +59,20 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, meshes: &mut Pending
             return None;
         }
     };
-    alpha(&mut reader);
+    let alpha = alpha(&mut reader);
     reader.finish();
-    shape
+    Some((shape?, alpha))
 }
 
-/// An opacity of 1 is what every shape has; another is not supported.
-fn alpha(reader: &mut ParamReader<'_>) {
-    let value = reader.float_in("alpha", 1.0, |v| (0.0..=1.0).contains(&v), "between 0 and 1");
-    if value < 1.0 {
-        let span = reader.span_of("alpha");
-        let message = "transparency by `alpha` is not supported yet";
-        reader.report().unsupported(span, message, "the shape is opaque");
+/// How much there is of a shape; 1 by default.
+fn alpha(reader: &mut ParamReader<'_>) -> Textured<f32> {
+    match reader.float_textured("alpha") {
+        Some(Textured::Value(value)) if !(0.0..=1.0).contains(&value) => {
+            reader.out_of_range("alpha", &value.to_string(), "between 0 and 1");
+            Textured::Value(1.0)
+        }
+        Some(alpha) => alpha,
+        None => Textured::Value(1.0),
     }
 }
 

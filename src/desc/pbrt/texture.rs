@@ -1,12 +1,13 @@
 //! `Texture`.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec2};
 
 use super::reader::{ParamReader, unknown_type};
 use super::texture_names::stand_in;
 use crate::desc::texture_kinds as kinds;
 use crate::desc::{
-    ClassedTexture, Parameter, SpectrumDesc, TEXTURES, TextureClass, TextureDesc, TextureKind, Textured,
+    ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, Parameter, SpectrumDesc, TEXTURES,
+    TextureClass, TextureDesc, TextureKind, Textured, WrapDesc,
 };
 
 /// How the parameters of a class of textures are read.
@@ -117,6 +118,25 @@ fn read_kind<V: Value>(reader: &mut ParamReader<'_>, class: TextureClass, kind: 
             textures: mix_textures(reader),
             direction: direction(reader),
         },
+        "checkerboard" => checkerboard(reader),
+        "dots" => TextureKind::Dots {
+            inside: V::textured(reader, &kinds::INSIDE),
+            outside: V::textured(reader, &kinds::OUTSIDE),
+            mapping: mapping(reader),
+        },
+        "bilerp" => TextureKind::Bilerp {
+            corners: [&kinds::V00, &kinds::V01, &kinds::V10, &kinds::V11].map(|corner| V::value(reader, corner)),
+            mapping: mapping(reader),
+        },
+        "imagemap" => TextureKind::Image(image_map(reader)?),
+        "fbm" => TextureKind::Fbm(octaves(reader)),
+        "wrinkled" => TextureKind::Wrinkled(octaves(reader)),
+        "windy" => TextureKind::Windy,
+        "marble" => TextureKind::Marble {
+            octaves: octaves(reader),
+            scale: reader.float_by(&kinds::SCALE) as f32,
+            variation: reader.float_by(&kinds::VARIATION) as f32,
+        },
         _ => TextureKind::Constant(V::value(reader, &kinds::VALUE)),
     })
 }
@@ -126,6 +146,67 @@ fn mix_textures<V: Value>(reader: &mut ParamReader<'_>) -> [Textured<V>; 2] {
         V::textured(reader, &kinds::MIX_TEX1),
         V::textured(reader, &kinds::MIX_TEX2),
     ]
+}
+
+fn checkerboard<V: Value>(reader: &mut ParamReader<'_>) -> TextureKind<V> {
+    let textures = [V::textured(reader, &kinds::TEX1), V::textured(reader, &kinds::TEX2)];
+    let is_solid = reader.integer_by(&kinds::DIMENSION) == 3;
+    let mapping = mapping(reader);
+    if is_solid {
+        TextureKind::Checkerboard3 { textures }
+    } else {
+        TextureKind::Checkerboard2 { textures, mapping }
+    }
+}
+
+fn mapping(reader: &mut ParamReader<'_>) -> MappingDesc {
+    let pair = |reader: &mut ParamReader<'_>, u, v| Vec2::new(reader.float_by(u) as f32, reader.float_by(v) as f32);
+    let kind = reader.choice_by(&kinds::MAPPING);
+    let scale = pair(reader, &kinds::USCALE, &kinds::VSCALE);
+    let delta = pair(reader, &kinds::UDELTA, &kinds::VDELTA);
+    let vectors = [&kinds::V1, &kinds::V2].map(|vector| reader.vector_by(vector).as_vec3());
+    match kind {
+        "spherical" => MappingDesc::Spherical,
+        "cylindrical" => MappingDesc::Cylindrical,
+        "planar" => MappingDesc::Planar { vectors, delta },
+        _ => MappingDesc::Uv { scale, delta },
+    }
+}
+
+fn octaves(reader: &mut ParamReader<'_>) -> OctavesDesc {
+    OctavesDesc {
+        octaves: reader.integer_by(&kinds::OCTAVES).unsigned_abs(),
+        roughness: reader.float_by(&kinds::ROUGHNESS) as f32,
+    }
+}
+
+/// `None`, having said so, without a file.
+fn image_map(reader: &mut ParamReader<'_>) -> Option<ImageMapDesc> {
+    let max_anisotropy = reader.float_by(&kinds::MAXANISOTROPY) as f32;
+    let filter = match reader.choice_by(&kinds::FILTER) {
+        "point" => ImageFilterDesc::Point,
+        "trilinear" => ImageFilterDesc::Trilinear,
+        "EWA" => ImageFilterDesc::Ewa { max_anisotropy },
+        _ => ImageFilterDesc::Bilinear,
+    };
+    let wrap = match reader.choice_by(&kinds::WRAP) {
+        "black" => WrapDesc::Black,
+        "clamp" => WrapDesc::Clamp,
+        "octahedralsphere" => WrapDesc::OctahedralSphere,
+        _ => WrapDesc::Repeat,
+    };
+    let mapping = mapping(reader);
+    let scale = reader.float_by(&kinds::SCALE) as f32;
+    let invert = reader.bool_by(&kinds::INVERT);
+    let encoding = reader.encoding_by(&kinds::ENCODING);
+    Some(ImageMapDesc {
+        image: reader.image(kinds::FILENAME.name, encoding)?,
+        mapping,
+        filter,
+        wrap,
+        scale,
+        invert,
+    })
 }
 
 fn direction(reader: &mut ParamReader<'_>) -> DVec3 {

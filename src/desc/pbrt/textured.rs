@@ -6,8 +6,9 @@ use super::params::{Param, ParamType, Values, value_span};
 use super::reader::ParamReader;
 use super::spectrum::Use;
 use super::suggest;
-use crate::desc::{Parameter, ParameterKind, SpectrumDesc, SpectrumValue, TextureClass, TextureId, Textured};
+use crate::desc::{ImageId, Parameter, ParameterKind, SpectrumDesc, SpectrumValue, TextureClass, TextureId, Textured};
 use crate::error::Span;
+use crate::image_io::Encoding;
 
 impl ParamReader<'_> {
     /// A number that may come from a texture.
@@ -87,6 +88,54 @@ impl ParamReader<'_> {
         }
     }
 
+    /// One of a few words by its table.
+    pub fn choice_by(&mut self, parameter: &'static Parameter) -> &'static str {
+        let ParameterKind::Choice { default, choices } = parameter.kind else {
+            return "";
+        };
+        let Some((word, span)) = self.string(parameter.name) else {
+            return default;
+        };
+        choices
+            .iter()
+            .copied()
+            .find(|&choice| choice == word)
+            .unwrap_or_else(|| {
+                let message = format!("`{}` is one of {}, not `{word}`", parameter.name, choices.join(", "));
+                let help = suggest::closest(&word, choices).map(|word| format!("did you mean `{word}`?"));
+                self.report().error_with_help(span, message, help);
+                default
+            })
+    }
+
+    /// The encoding of an image's samples by its table.
+    pub fn encoding_by(&mut self, parameter: &'static Parameter) -> Encoding {
+        let Some((name, span)) = self.string(parameter.name) else {
+            return Encoding::Srgb;
+        };
+        Encoding::from_name(&name).unwrap_or_else(|| {
+            let message = format!(
+                "`{}` is `sRGB`, `linear` or `gamma` with a positive exponent, not `{name}`",
+                parameter.name
+            );
+            self.report().error(span, message);
+            Encoding::Srgb
+        })
+    }
+
+    /// The image that a parameter names, which is read when all of the scene has been; complains if it is not given.
+    pub fn image(&mut self, name: &'static str, encoding: Encoding) -> Option<ImageId> {
+        let Some((file, span)) = self.string(name) else {
+            if !self.has(name) {
+                let (span, message) = (self.span, format!("{} has no `\"string {name}\"`", self.entity));
+                self.report().error(span, message);
+            }
+            return None;
+        };
+        let path = self.context.resolve(&file, span);
+        Some(self.context.images.add(path, encoding, span))
+    }
+
     /// A vector by its table.
     pub fn vector_by(&mut self, parameter: &'static Parameter) -> DVec3 {
         match parameter.kind {
@@ -123,27 +172,6 @@ impl ParamReader<'_> {
             Some(value) => value,
             None => default,
         }
-    }
-
-    /// A word by its table.
-    pub fn choice_by(&mut self, parameter: &'static Parameter) -> &'static str {
-        let ParameterKind::Choice { default, choices } = parameter.kind else {
-            return "";
-        };
-        let Some((word, span)) = self.string(parameter.name) else {
-            return default;
-        };
-        if let Some(choice) = choices.iter().find(|&&choice| choice == word) {
-            return choice;
-        }
-        let message = format!(
-            "`{}` is `{word}`, it must be one of {}",
-            parameter.name,
-            choices.join(", ")
-        );
-        let help = suggest::closest(&word, choices).map(|choice| format!("did you mean `{choice}`?"));
-        self.report().error_with_help(span, message, help);
-        default
     }
 
     /// A reflectance by its table, if one is given.

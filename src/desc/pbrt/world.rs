@@ -31,6 +31,7 @@ pub(super) struct RawShape {
     pub world_from_object: MotionDesc,
     pub reverse_orientation: bool,
     pub material: usize,
+    pub alpha: Textured<f32>,
     pub area_light: Option<Arc<AreaLightDesc>>,
 }
 
@@ -111,7 +112,7 @@ pub(super) struct Materials {
 #[derive(Debug)]
 pub(super) enum Slot {
     /// A material.
-    Surface(MaterialDesc),
+    Surface(Box<MaterialDesc>),
     /// No surface, only a boundary between media.
     Interface,
     /// Nothing yet; where the name was first used.
@@ -123,7 +124,7 @@ impl Default for Materials {
     fn default() -> Self {
         let span = Span::default();
         Self {
-            slots: vec![Slot::Surface(default_material(span))],
+            slots: vec![Slot::Surface(Box::new(default_material(span)))],
             names: HashMap::new(),
         }
     }
@@ -137,6 +138,7 @@ pub(super) fn default_material(span: Span) -> MaterialDesc {
     });
     MaterialDesc {
         name: None,
+        relief: None,
         kind: MaterialKind::Diffuse {
             reflectance,
             roughness: Textured::Value(0.0),
@@ -148,7 +150,8 @@ pub(super) fn default_material(span: Span) -> MaterialDesc {
 impl Materials {
     /// Adds a material (none: an interface); its slot.
     pub fn add(&mut self, material: Option<MaterialDesc>) -> usize {
-        self.slots.push(material.map_or(Slot::Interface, Slot::Surface));
+        self.slots
+            .push(material.map_or(Slot::Interface, |material| Slot::Surface(Box::new(material))));
         self.slots.len() - 1
     }
 
@@ -169,10 +172,10 @@ impl Materials {
             return Some(format!("there is a named material `{name}` already"));
         }
         self.slots[index] = match material {
-            Some(material) => Slot::Surface(MaterialDesc {
+            Some(material) => Slot::Surface(Box::new(MaterialDesc {
                 name: Some(name),
                 ..material
-            }),
+            })),
             None => Slot::Interface,
         };
         None

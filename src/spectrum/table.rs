@@ -1,0 +1,131 @@
+//! Reflectances of sRGB colours by interpolation in the table that the build script made (`build/rgb_table.rs`, which says how it
+//! is laid out).
+
+use std::sync::LazyLock;
+
+use super::rgb2spec::SigmoidPolynomial;
+use super::{SampledSpectrum, Wavelengths};
+
+/// Nodes along each axis.
+const SIZE: usize = 64;
+
+struct Table {
+    coefficients: Vec<[f32; 3]>,
+    /// Values of the largest component.
+    nodes: [f32; SIZE],
+}
+
+static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    let bytes = include_bytes!(concat!(env!("OUT_DIR"), "/rgb_table.bin"));
+    let (words, _) = bytes.as_chunks::<4>();
+    let (entries, _) = words.as_chunks::<3>();
+    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+    Table {
+        coefficients: entries.iter().map(|entry| entry.map(f32::from_le_bytes)).collect(),
+        nodes: std::array::from_fn(|i| smooth(smooth(i as f32 / (SIZE - 1) as f32))),
+    }
+});
+
+/// Has the table ready, so that no lookup pays for it.
+pub(super) fn prepare() {
+    LazyLock::force(&TABLE);
+}
+
+/// The reflectance of a colour in linear sRGB, each component in [0, 1], at the wavelengths of a path. Greys are exact.
+#[inline]
+pub(super) fn reflectance(rgb: [f32; 3], lambda: &Wavelengths) -> SampledSpectrum {
+    if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
+        return SampledSpectrum::splat(rgb[0]);
+    }
+    TABLE.polynomial(rgb).sample(lambda)
+}
+
+impl Table {
+    fn polynomial(&self, rgb: [f32; 3]) -> SigmoidPolynomial {
+        let [r, g, b] = rgb;
+        let largest = if r > g {
+            if r > b { 0 } else { 2 }
+        } else if g > b {
+            1
+        } else {
+            2
+        };
+        let brightest = rgb[largest];
+        let along = |c: f32| {
+            let position = (c / brightest * (SIZE - 1) as f32).clamp(0.0, (SIZE - 1) as f32);
+            let cell = (position as usize).min(SIZE - 2);
+            (cell, position - cell as f32)
+        };
+        let (x, dx) = along(rgb[(largest + 1) % 3]);
+        let (y, dy) = along(rgb[(largest + 2) % 3]);
+        let above = self.nodes.partition_point(|&node| node <= brightest);
+        let z = above.clamp(1, SIZE - 1) - 1;
+        let dz = (brightest - self.nodes[z]) / (self.nodes[z + 1] - self.nodes[z]);
+        let corner = ((largest * SIZE + z) * SIZE + y) * SIZE + x;
+        SigmoidPolynomial::from_coefficients(std::array::from_fn(|c| {
+            let at = |dz: usize, dy: usize, dx: usize| self.coefficients[corner + (dz * SIZE + dy) * SIZE + dx][c];
+            let lerp = |t: f32, a: f32, b: f32| a + (b - a) * t;
+            let row = |dz, dy| lerp(dx, at(dz, dy, 0), at(dz, dy, 1));
+            let face = |dz| lerp(dy, row(dz, 0), row(dz, 1));
+            lerp(dz, face(0), face(1))
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{cie, named};
+
+    /// The colour, under D65, of what the table gives for a colour.
+    fn round_trip(rgb: [f32; 3]) -> [f64; 3] {
+        let polynomial = TABLE.polynomial(rgb);
+        let xyz = cie::integrate_xyz(|nm| polynomial.at(nm) * named::d65().at(nm));
+        cie::xyz_to_srgb(xyz).map(|c| c / f64::from(cie::y_integral()))
+    }
+
+    #[test]
+    fn colours_survive_the_round_trip() {
+        let (mut worst, mut sum, mut count) = ((0.0, [0.0; 3]), 0.0, 0);
+        for i in 0..1000 {
+            // Between the nodes, and not only there; the edges and corners of the cube too.
+            let rgb = [i / 100, i / 10 % 10, i % 10].map(|c| c as f32 / 9.0);
+            if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
+                continue;
+            }
+            for (a, b) in round_trip(rgb).into_iter().zip(rgb) {
+                let error = (a - f64::from(b)).abs();
+                sum += error;
+                count += 1;
+                if error > worst.0 {
+                    worst = (error, rgb);
+                }
+            }
+        }
+        // An 8-bit code is 4e-3 wide.
+        assert!(worst.0 < 2e-3, "{worst:?}");
+        assert!(sum / f64::from(count) < 4e-4, "{}", sum / f64::from(count));
+    }
+
+    #[test]
+    fn the_table_agrees_with_the_solver() {
+        for rgb in [[0.8, 0.1, 0.05], [0.2, 0.5, 0.3], [0.01, 0.02, 0.7], [0.9, 0.85, 0.2]] {
+            let exact = super::super::rgb2spec::solve(rgb);
+            let table = TABLE.polynomial(rgb);
+            for nm in [400.0, 480.0, 550.0, 620.0, 700.0] {
+                let (a, b) = (table.at(nm), exact.at(nm));
+                assert!((a - b).abs() < 3e-3, "{rgb:?} at {nm}: {a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn black_white_and_greys_are_exact() {
+        let lambda = Wavelengths::sample_visible(0.4);
+        for grey in [0.0, 0.3, 1.0] {
+            assert_eq!(reflectance([grey; 3], &lambda), SampledSpectrum::splat(grey));
+        }
+        let dark = reflectance([1e-7, 0.0, 1e-8], &lambda);
+        assert!(dark.max_value() < 1e-5 && dark.min_value() >= 0.0, "{dark:?}");
+    }
+}
