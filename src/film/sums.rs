@@ -26,11 +26,17 @@ pub struct TileSums {
 /// The greatest magnitude that is added: 2^62 of them still fit.
 const LARGEST: f64 = (1_u64 << 62) as f64;
 
-/// `value` in units of 2^-64, rounded towards zero; `None` if it is not finite or beyond [`LARGEST`].
+/// `value` in units of 2^-64, rounded down; `None` if it is not finite or beyond [`LARGEST`].
 #[inline]
 fn quantize(value: f64) -> Option<i128> {
-    // Scaling by a power of two is exact.
-    (value.abs() < LARGEST).then_some((value * 18_446_744_073_709_551_616.0) as i128)
+    if value.abs() < LARGEST {
+        // Both parts are exact, and so is scaling by a power of two.
+        let whole = value.floor();
+        let fraction = (value - whole) * 18_446_744_073_709_551_616.0;
+        Some((i128::from(whole as i64) << 64) + i128::from(fraction as u64))
+    } else {
+        None
+    }
 }
 
 /// Back to a number.

@@ -1,15 +1,19 @@
 //! Shapes, the world they make up, packets of rays, and what a hit says about the surface.
 
+mod cone;
 mod mesh;
 mod packet;
 mod sphere;
 mod surface;
+mod triangle;
 mod world;
 
+pub use cone::RayCone;
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket};
 pub use sphere::{Sphere, SphereHits};
-pub use surface::{Hit, LEAST_ERROR, RayCone, SurfaceInteraction, triangle_error};
+pub use surface::{Hit, SurfaceInteraction, SurfacePacket};
+pub use triangle::{LEAST_ERROR, triangle_error};
 pub use world::{Geometry, Group, Instance, Opacity, Shape, World, WorldBuilder};
 
 macro_rules! index_newtype {

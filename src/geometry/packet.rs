@@ -46,14 +46,16 @@ impl Ray {
     /// not zero, time in [0, 1].
     #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.abs().max_element() <= Self::LARGEST
-            && self.direction.abs().max_element() <= Self::LARGEST
-            && !self.origin.is_nan()
-            && !self.direction.is_nan()
-            && self.direction != Vec3::ZERO
-            && self.tnear >= 0.0
-            && !self.tfar.is_nan()
-            && (0.0..=1.0).contains(&self.time)
+        // Comparisons are false of NaN. One branch in all: nearly every ray is valid.
+        let origin = self.origin.abs().to_array().map(|x| x <= Self::LARGEST);
+        let direction = self.direction.abs().to_array().map(|x| x <= Self::LARGEST);
+        (origin[0] & origin[1] & origin[2])
+            & (direction[0] & direction[1] & direction[2])
+            & (self.direction != Vec3::ZERO)
+            & (self.tnear >= 0.0)
+            & !self.tfar.is_nan()
+            & (self.time >= 0.0)
+            & (self.time <= 1.0)
     }
 }
 

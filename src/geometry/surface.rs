@@ -1,8 +1,11 @@
 //! From the ids of a hit to the surface there. Distance and position are recomputed from ray and primitive in double precision,
 //! so that they do not depend on the backend or on its vector width.
 
-use super::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
-use crate::math::{DAffine3, DVec3, Vec2, Vec3, gamma, offset_ray_origin};
+use super::triangle::{self, LEAST_ERROR, TriangleLanes, WorldPoint, WorldPoints, rounding_error};
+use super::{
+    GeometryId, HitPacket, InstanceId, LANES, PrimitiveId, Ray, RayPacket, Shape, Sphere, TriangleMesh, World,
+};
+use crate::math::{DAffine3, DVec3, Vec2, Vec3, Vectorizer, gamma, offset_ray_origin};
 
 /// What a ray hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +37,6 @@ pub struct SurfaceInteraction {
     pub p: Vec3,
     /// How far the surface that a backend sees may be from `p`, along the normal.
     pub error: f32,
-    /// Distance along the ray, in units of its direction.
-    pub t: f32,
     /// Geometric normal, unit length, on the side that the shape's orientation says; never turned towards the ray.
     pub ng: Vec3,
     /// Shading normal, unit length, in the hemisphere of `ng`.
@@ -48,7 +49,7 @@ pub struct SurfaceInteraction {
     pub uv: Vec2,
     /// Back along the ray, of the length of its direction.
     pub wo: Vec3,
-    /// Width of the ray's [cone](RayCone) at the point: how much of the surface one sample stands for, across the ray. 0, as
+    /// Width of the ray's [cone](super::RayCone) at the point: how much of the surface one sample stands for, across the ray. 0, as
     /// [`World::interaction`] leaves it, asks for the finest detail of textures.
     pub footprint: f32,
     /// Scene time of the ray.
@@ -84,26 +85,92 @@ impl SurfaceInteraction {
 /// bright.
 const FAR_GAP: f32 = 1e-6;
 
-/// How wide a path's ray is taken to be, for the filtering of textures: a cone around it (Akenine-Möller et al. 2019, "Texture
-/// Level of Detail Strategies for Real-Time Ray Tracing"). Scattering does not change how it widens, so that its width is that of
-/// a pixel seen over the whole length of the path.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RayCone {
-    /// At the ray's origin, in scene units.
-    pub width: f32,
-    /// Growth over a unit of distance.
-    pub spread: f32,
+impl World {
+    /// The surface where `ray` meets the primitive that a backend says it hits.
+    ///
+    /// The point is on the primitive even where the ray just misses it by another rounding than the backend's.
+    pub fn interaction(&self, ray: &Ray, hit: Hit) -> SurfaceInteraction {
+        let shape = &self.geometry(hit.geometry).shape;
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let Some(id) = hit.instance else {
+            return match shape {
+                Shape::Mesh(mesh) => {
+                    let triangle = hit.primitive.index();
+                    let vertices = mesh.triangle(triangle, ray.time);
+                    let point = triangle::point(&vertices, origin, direction).in_world();
+                    world_triangle(mesh, &vertices, &point, ray, hit)
+                }
+                Shape::Spheres(spheres) => {
+                    let sphere = &spheres[hit.primitive.index()];
+                    finish(&sphere_surface(sphere, origin, direction, ray.tnear), ray, hit)
+                }
+            };
+        };
+        let motion = &self.instance(id).world_from_object;
+        let (world_from_object, object_from_world) = (motion.at(ray.time), motion.inverse_at(ray.time));
+        let origin = object_from_world.transform_point3(origin);
+        let direction = object_from_world.transform_vector3(direction);
+        let local = match shape {
+            Shape::Mesh(mesh) => triangle_surface(mesh, hit.primitive.index(), origin, direction, ray.time),
+            Shape::Spheres(spheres) => sphere_surface(&spheres[hit.primitive.index()], origin, direction, ray.tnear),
+        };
+        finish(
+            &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
+            ray,
+            hit,
+        )
+    }
+
+    /// [`World::interaction`] of each lane of a packet that takes part and hit something; the same bits, faster.
+    #[inline]
+    pub fn surfaces(&self, vectorizer: Vectorizer, rays: &RayPacket, hits: &HitPacket) -> SurfacePacket<'_> {
+        let mut lanes = TriangleLanes {
+            origins: [rays.org_x, rays.org_y, rays.org_z],
+            directions: [rays.dir_x, rays.dir_y, rays.dir_z],
+            ..TriangleLanes::default()
+        };
+        for lane in 0..LANES {
+            if let Some(hit) = hits.get(lane)
+                && let Some((mesh, triangle)) = self.world_mesh(hit)
+            {
+                for (axes, vertex) in lanes.vertices.iter_mut().zip(mesh.triangle(triangle, rays.time[lane])) {
+                    [axes[0][lane], axes[1][lane], axes[2][lane]] = vertex.to_array();
+                }
+            }
+        }
+        SurfacePacket {
+            world: self,
+            points: lanes.points(vectorizer),
+            vertices: lanes.vertices,
+        }
+    }
+
+    /// The mesh and the triangle that were hit, if the mesh is in world space.
+    #[inline]
+    fn world_mesh(&self, hit: Hit) -> Option<(&TriangleMesh, usize)> {
+        match &self.geometry(hit.geometry).shape {
+            Shape::Mesh(mesh) if hit.instance.is_none() => Some((mesh, hit.primitive.index())),
+            Shape::Mesh(_) | Shape::Spheres(_) => None,
+        }
+    }
 }
 
-impl RayCone {
-    /// The cone from the point at distance `t` on.
+/// What [`World::surfaces`] computed for eight rays together.
+pub struct SurfacePacket<'a> {
+    world: &'a World,
+    points: WorldPoints,
+    vertices: [[[f32; LANES]; 3]; 3],
+}
+
+impl SurfacePacket<'_> {
+    /// [`World::interaction`] of `ray` with what it `hit`, which were in this lane.
     #[inline]
-    #[must_use]
-    pub fn after(self, t: f32) -> Self {
-        Self {
-            width: self.width + self.spread * t,
-            ..self
-        }
+    pub fn get(&self, lane: usize, ray: &Ray, hit: Hit) -> SurfaceInteraction {
+        let Some((mesh, _)) = self.world.world_mesh(hit) else {
+            return self.world.interaction(ray, hit);
+        };
+        let vertices = self.vertices.map(|axes| Vec3::from_array(axes.map(|axis| axis[lane])));
+        world_triangle(mesh, &vertices, &self.points.get(lane), ray, hit)
     }
 }
 
@@ -112,7 +179,6 @@ struct LocalSurface {
     p: DVec3,
     /// As [`SurfaceInteraction::error`], less the rounding of `p`.
     error: f64,
-    t: f64,
     /// Unit length.
     ng: DVec3,
     /// Of any length but 0.
@@ -122,42 +188,11 @@ struct LocalSurface {
     uv: Vec2,
 }
 
-impl World {
-    /// The surface where `ray` meets the primitive that a backend says it hits.
-    ///
-    /// The point is on the primitive even where the ray just misses it by another rounding than the backend's.
-    pub fn interaction(&self, ray: &Ray, hit: Hit) -> SurfaceInteraction {
-        let shape = &self.geometry(hit.geometry).shape;
-        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-        let Some(id) = hit.instance else {
-            return finish(&local_surface(shape, hit.primitive, origin, direction, ray), ray, hit);
-        };
-        let motion = &self.instance(id).world_from_object;
-        let (world_from_object, object_from_world) = (motion.at(ray.time), motion.inverse_at(ray.time));
-        let origin = object_from_world.transform_point3(origin);
-        let direction = object_from_world.transform_vector3(direction);
-        let local = local_surface(shape, hit.primitive, origin, direction, ray);
-        finish(
-            &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
-            ray,
-            hit,
-        )
-    }
-}
-
-fn local_surface(shape: &Shape, primitive: PrimitiveId, origin: DVec3, direction: DVec3, ray: &Ray) -> LocalSurface {
-    match shape {
-        Shape::Mesh(mesh) => triangle_surface(mesh, primitive.index(), origin, direction, ray.time),
-        Shape::Spheres(spheres) => sphere_surface(&spheres[primitive.index()], origin, direction, ray.tnear),
-    }
-}
-
 fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
     let ng = local.ng.as_vec3();
     SurfaceInteraction {
         p: local.p.as_vec3(),
         error: (local.error + rounding_error(local.p, ng)) as f32,
-        t: local.t as f32,
         ng,
         ns: local.ns.try_normalize().unwrap_or(ng),
         dpdu: local.dpdu,
@@ -195,98 +230,48 @@ fn to_world(
         ns: normal(local.ns.as_dvec3()).normalize_or_zero().as_vec3(),
         dpdu: world_from_object.transform_vector3(local.dpdu.as_dvec3()).as_vec3(),
         dpdv: world_from_object.transform_vector3(local.dpdv.as_dvec3()).as_vec3(),
-        ..*local
+        uv: local.uv,
     }
 }
 
-/// How far rounding to single precision can move `p`, and then the origin of a ray beside it, along the unit normal `n`.
-fn rounding_error(p: DVec3, n: Vec3) -> f64 {
-    n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(3))
+/// What a mesh says about a point of a triangle.
+struct Attributes {
+    /// Whether the geometric normal points to the side from which the vertices run clockwise.
+    flips_normal: bool,
+    /// Interpolated shading normal, not normalised; `None` without normals, or where they cancel.
+    ns: Option<Vec3>,
+    dpdu: Vec3,
+    dpdv: Vec3,
+    uv: Vec2,
 }
 
-/// The least error, relative to the size of a primitive: where a plane through the origin is exact a ray must start off it all
-/// the same, and by more than the smallest numbers there are.
-pub const LEAST_ERROR: f64 = 1.0 / (1_u64 << 36) as f64;
-
-/// How far from its plane a backend may see a triangle, for a ray that starts on it.
-///
-/// A backend computes T = ng . (v - o), a distance times |ng|, from corners relative to the origin, in single precision. With
-/// extents E of the triangle, an element of ng = e x e' is off by some 14 u E E (u the unit roundoff: edges are off by 3 u E, and
-/// two products and their difference round), the corner by u E, the sum by 3 u; together 22 u E E E for each of three terms. Half
-/// of this worst case is never exceeded in tests. Where the triangle is perpendicular to an axis only [`LEAST_ERROR`]
-/// is left, as the sum then has one term and the rest is exact.
-pub fn triangle_error(vertices: &[DVec3; 3]) -> f64 {
-    let [a, b, c] = *vertices;
-    plane_error(vertices, (b - a).cross(c - a).length())
-}
-
-/// [`triangle_error`] of a triangle, given the length of the cross product of two edges.
+/// Attributes of the point of a triangle with given anticlockwise normal `ng` and barycentrics of its second and third corner.
 #[inline]
-fn plane_error(vertices: &[DVec3; 3], area: f64) -> f64 {
-    let [a, b, c] = *vertices;
-    let extent = a.max(b).max(c) - a.min(b).min(c);
-    let size = extent.max_element();
-    let volume = extent.x * extent.y * extent.z;
-    let plane = if volume == 0.0 {
-        0.0
-    } else {
-        f64::from(gamma(32)) * volume / area
-    };
-    // The plane of a sliver means nothing; a thousandth of its size is as far as a ray may be moved.
-    plane.clamp(LEAST_ERROR * size, 1e-3 * size)
-}
-
-fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
-    let vertices = mesh.triangle(triangle, time).map(Vec3::as_dvec3);
-    let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    let cross = e1.cross(e2);
-    let area = cross.length();
-    // Moeller and Trumbore (1997); barycentrics are kept inside, where a backend rounded otherwise.
-    let from_corner = origin - vertices[0];
-    let moment = from_corner.cross(direction);
-    let inverse = -1.0 / direction.dot(cross);
-    let (v, w) = match (e2.dot(moment) * inverse, -e1.dot(moment) * inverse) {
-        (v, w) if v.is_finite() && w.is_finite() => clamp_barycentrics(v, w),
-        _ => (1.0 / 3.0, 1.0 / 3.0),
-    };
-    let p = vertices[0] + e1 * v + e2 * w;
-    let weights = [(1.0 - v - w) as f32, v as f32, w as f32];
+fn attributes(mesh: &TriangleMesh, triangle: usize, vertices: &[Vec3; 3], ng: Vec3, [v, w]: [f32; 2]) -> Attributes {
+    let weights = [1.0 - v - w, v, w];
     let corners = mesh.indices()[triangle].map(|v| v as usize);
-
-    let mut ng = cross / area;
-    if mesh.has_flipped_normal() {
-        ng = -ng;
-    }
-    let mut ns = Vec3::ZERO;
+    let mut flips_normal = mesh.has_flipped_normal();
+    let mut ns = None;
     if let Some(normals) = mesh.normals() {
         let normals = corners.map(|v| normals[v]);
         // With normals given they say which side is out, as in pbrt.
-        if ng.dot((normals[0] + normals[1] + normals[2]).as_dvec3()) < 0.0 {
-            ng = -ng;
-        }
-        ns = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
+        let cos = ng.dot(normals[0] + normals[1] + normals[2]);
+        flips_normal = cos < 0.0 || (cos == 0.0 && flips_normal);
+        let mean = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
+        ns = (mean != Vec3::ZERO).then_some(mean);
     }
-    if ns == Vec3::ZERO {
-        ns = ng.as_vec3();
-    }
+    let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
     let (uv, [dpdu, dpdv]) = match mesh.uvs() {
         // Without coordinates: (0, 0), (1, 0), (1, 1).
-        None => (
-            Vec2::new(weights[1] + weights[2], weights[2]),
-            [e1.as_vec3(), (e2 - e1).as_vec3()],
-        ),
+        None => (Vec2::new(v + w, w), [e1, e2 - e1]),
         Some(uvs) => {
             let uvs = corners.map(|v| uvs[v]);
             let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
-            (uv, triangle_derivatives(e1.as_vec3(), e2.as_vec3(), &uvs))
+            (uv, triangle_derivatives(e1, e2, &uvs))
         }
     };
-    let t = (p - origin).dot(direction) / direction.length_squared();
-    LocalSurface {
-        p,
-        error: plane_error(&vertices, area),
-        t,
-        ng,
+    Attributes {
+        flips_normal,
         ns,
         dpdu,
         dpdv,
@@ -294,15 +279,51 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
     }
 }
 
-/// The nearest barycentrics of the second and third corner inside the triangle, nearly.
+fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
+    let vertices = mesh.triangle(triangle, time);
+    let point = triangle::point(&vertices, origin, direction);
+    let barycentrics = point.barycentrics.map(|b| b as f32);
+    let attributes = attributes(mesh, triangle, &vertices, point.ng.as_vec3(), barycentrics);
+    let ng = if attributes.flips_normal { -point.ng } else { point.ng };
+    LocalSurface {
+        p: point.p,
+        error: point.error,
+        ng,
+        ns: attributes.ns.unwrap_or(ng.as_vec3()),
+        dpdu: attributes.dpdu,
+        dpdv: attributes.dpdv,
+        uv: attributes.uv,
+    }
+}
+
+/// The surface at a point of a triangle of a mesh in world space.
 #[inline]
-fn clamp_barycentrics(v: f64, w: f64) -> (f64, f64) {
-    let (v, w) = (v.max(0.0), w.max(0.0));
-    let sum = v + w;
-    if sum > 1.0 { (v / sum, w / sum) } else { (v, w) }
+fn world_triangle(
+    mesh: &TriangleMesh,
+    vertices: &[Vec3; 3],
+    point: &WorldPoint,
+    ray: &Ray,
+    hit: Hit,
+) -> SurfaceInteraction {
+    let attributes = attributes(mesh, hit.primitive.index(), vertices, point.ng, point.barycentrics);
+    let ng = if attributes.flips_normal { -point.ng } else { point.ng };
+    SurfaceInteraction {
+        p: point.p,
+        error: point.error,
+        ng,
+        ns: attributes.ns.and_then(Vec3::try_normalize).unwrap_or(ng),
+        dpdu: attributes.dpdu,
+        dpdv: attributes.dpdv,
+        uv: attributes.uv,
+        wo: -ray.direction,
+        footprint: 0.0,
+        time: ray.time,
+        hit,
+    }
 }
 
 /// Solves dp = dpdu du + dpdv dv along two edges for dpdu and dpdv; zero where the texture coordinates are degenerate.
+#[inline]
 fn triangle_derivatives(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> [Vec3; 2] {
     let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = d1.perp_dot(d2);
@@ -345,7 +366,6 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) 
         p,
         // The test that a backend makes is in double precision.
         error: LEAST_ERROR * (p - sphere.center()).length(),
-        t,
         ng,
         ns: ng.as_vec3(),
         dpdu: dpdu.as_vec3(),

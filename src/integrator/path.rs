@@ -2,13 +2,12 @@
 //! (Veach 1997, section 9.2.4), and Russian roulette on the throughput.
 
 use super::shadow::shadow_ray;
-use super::wave::{FIRST_PATH_GROUP, Lane, Origin, Slot, Stage};
-use crate::geometry::{Hit, Ray, SurfaceInteraction};
+use super::wave::{EventNumbers, Lane, Origin, Slot, Stage};
+use crate::geometry::{Ray, SurfaceInteraction};
 use crate::light::LightDensity;
 use crate::material::{Bsdf, Density, TransportMode};
-use crate::math::{Vec2, Vec3};
+use crate::math::Vec3;
 use crate::sampling::power_heuristic;
-use crate::spectrum::SampledSpectrum;
 
 /// The path tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,35 +23,31 @@ const LAST_SURVIVAL: f32 = 0.95;
 impl PathIntegrator {
     /// Shades the point that a lane's ray hit (or the environment, if it hit nothing), and gives the lane's next ray.
     #[inline]
-    pub(super) fn shade(&self, stage: &mut Stage, lane: &Lane, ray: &Ray, hit: Option<Hit>) -> Option<(Lane, Ray)> {
-        let Some(hit) = hit else {
+    pub(super) fn shade(
+        &self,
+        stage: &mut Stage,
+        lane: &Lane,
+        ray: &Ray,
+        surface: Option<SurfaceInteraction>,
+        numbers: &EventNumbers,
+    ) -> Option<(Lane, Ray)> {
+        let Some(mut si) = surface else {
             add_environment(stage, lane, ray);
             return None;
         };
-        let mut si = stage.scene.world().interaction(ray, hit);
-        let cone = lane.cone.after(si.t);
+        let cone = lane.cone.after(si.p.distance(ray.origin));
         si.footprint = cone.width;
-        let wo = -ray.direction;
-        add_emission(stage, lane, &si, wo);
+        let (si, wo) = (&si, si.wo);
+        add_emission(stage, lane, si, wo);
         if self.max_depth == Some(stage.depth) {
             return None;
         }
         let slot = &mut stage.slots[lane.slot as usize];
-        let bsdf = stage.scene.material(hit.geometry).bsdf(&si, &mut slot.lambda);
-        let [light_x, light_y, u_light, u_roulette] = slot.stream.draw4(FIRST_PATH_GROUP + 2 * stage.depth);
-        let bsdf_group = FIRST_PATH_GROUP + 2 * stage.depth + 1;
-        // The first two numbers are the same, and cheaper alone.
-        let ([bsdf_x, bsdf_y], u_lobe) = if bsdf.has_several_lobes() {
-            let [x, y, lobe, _] = slot.stream.draw4(bsdf_group);
-            ([x, y], lobe)
-        } else {
-            (slot.stream.draw2(bsdf_group), 0.0)
-        };
+        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, &mut slot.lambda);
         if !bsdf.is_delta() {
-            sample_light(stage, lane, &si, &bsdf, wo, u_light, Vec2::new(light_x, light_y));
+            sample_light(stage, lane, si, &bsdf, wo, numbers);
         }
-
-        let sample = bsdf.sample_f(wo, u_lobe, Vec2::new(bsdf_x, bsdf_y), TransportMode::Radiance)?;
+        let sample = bsdf.sample_f(wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance)?;
         let mut next = Lane {
             slot: lane.slot,
             beta: lane.beta * sample.weight(),
@@ -65,7 +60,7 @@ impl PathIntegrator {
         };
         let survival = self.survival(stage.depth, &next);
         if survival < 1.0 {
-            if u_roulette >= survival {
+            if numbers.roulette >= survival {
                 return None;
             }
             next.beta *= 1.0 / survival;
@@ -132,28 +127,27 @@ fn sample_light(
     si: &SurfaceInteraction,
     bsdf: &Bsdf,
     wo: Vec3,
-    u_light: f32,
-    u: Vec2,
+    numbers: &EventNumbers,
 ) -> Option<()> {
     let slot: &mut Slot = &mut stage.slots[lane.slot as usize];
-    let chosen = stage.scene.light_sampler().sample(si.p, si.ns, u_light)?;
+    let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
     let sample = stage
         .scene
         .light(chosen.light)
-        .sample_li(si.p, si.time, u, &slot.lambda)?;
-    let f: SampledSpectrum = bsdf.f(wo, sample.wi, TransportMode::Radiance);
-    if f.is_black() {
+        .sample_li(si.p, si.time, numbers.light, &slot.lambda)?;
+    let bsdf = bsdf.eval(wo, sample.wi, TransportMode::Radiance)?;
+    if bsdf.f.is_black() {
         return None;
     }
-    let mut factor = bsdf.abs_cos(sample.wi) / chosen.pmf;
+    let mut factor = bsdf.cos_theta / chosen.pmf;
     if let LightDensity::Continuous(pdf) = sample.density {
-        let pdf_light = chosen.pmf * pdf.0;
-        let pdf_bsdf = bsdf.pdf(wo, sample.wi, TransportMode::Radiance).0;
-        factor *= power_heuristic(pdf_light, pdf_bsdf) / pdf.0;
+        factor *= power_heuristic(chosen.pmf * pdf.0, bsdf.pdf.0) / pdf.0;
     }
     let ray = shadow_ray(si, sample.wi, sample.end);
     if ray.is_valid() {
-        stage.shadows.push(&ray, lane.slot, lane.beta * f * sample.li * factor);
+        stage
+            .shadows
+            .push(&ray, lane.slot, lane.beta * bsdf.f * sample.li * factor);
     } else {
         slot.broken = true;
     }

@@ -18,7 +18,7 @@ use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
 use crate::geometry::{HitPacket, LANES, Ray, RayCone, RayPacket};
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, Vectorizer};
 use crate::sampling::{SampleStream, SolidAnglePdf};
 use crate::scene::{Scene, View};
 use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths};
@@ -29,8 +29,8 @@ const BLOCK: [u32; 2] = [4, 2];
 /// Groups of random numbers that the camera sample uses.
 const FILM_GROUP: u32 = 0;
 const DETECTOR_GROUP: u32 = 1;
-/// The first group that integrators may use.
-pub(super) const FIRST_PATH_GROUP: u32 = 2;
+/// The first group of the scattering events.
+const FIRST_PATH_GROUP: u32 = 2;
 
 /// Lanes that a wave is filled up to with several sample indices, where a tile is small.
 const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
@@ -87,6 +87,9 @@ pub(super) struct Wave<'a> {
     view: &'a View,
     /// Whether whole tiles are rendered, as packets' answers depend on all their lanes.
     whole_tiles: bool,
+    vectorizer: Vectorizer,
+    /// Stands in for the stream of a lane that is not there.
+    idle_stream: SampleStream,
     slots: Vec<Slot>,
     lanes: Vec<Lane>,
     rays: Vec<RayPacket>,
@@ -115,6 +118,8 @@ impl<'a> Wave<'a> {
             scene,
             view,
             whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
+            vectorizer: Vectorizer::default(),
+            idle_stream: view.sampler.start(0, 0, 0),
             slots: Vec::new(),
             lanes: Vec::new(),
             rays: Vec::new(),
@@ -176,9 +181,13 @@ impl<'a> Wave<'a> {
     }
 
     fn generate_block(&mut self, rect: PixelRect, traced: PixelRect, corner: [u32; 2], sample: u32) {
+        let pixels: [[u32; 2]; LANES] =
+            std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
+        let streams = pixels.map(|[x, y]| self.view.sampler.start(x.cast_signed(), y.cast_signed(), sample));
+        let film = SampleStream::draw4_lanes(self.vectorizer, &streams, FILM_GROUP);
+        let detector = SampleStream::draw4_lanes(self.vectorizer, &streams, DETECTOR_GROUP);
         let mut packet = RayPacket::EMPTY;
-        for i in 0..LANES {
-            let (x, y) = (corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]);
+        for (i, &[x, y]) in pixels.iter().enumerate() {
             let mut lane = Lane {
                 slot: Lane::NO_SLOT,
                 beta: SampledSpectrum::ONE,
@@ -187,7 +196,15 @@ impl<'a> Wave<'a> {
                 cone: RayCone::default(),
             };
             if traced.contains(x, y) {
-                let (mut slot, ray, cone) = camera_slot(self.scene, self.view, [x, y], sample);
+                let of = |group: &[[f32; LANES]; 4]| group.map(|numbers| numbers[i]);
+                let (mut slot, ray, cone) = camera_slot(
+                    self.scene,
+                    self.view,
+                    [x, y],
+                    (sample, streams[i]),
+                    of(&film),
+                    of(&detector),
+                );
                 lane.cone = cone;
                 if ray.is_valid() {
                     packet.set(i, &ray);
@@ -225,25 +242,38 @@ impl<'a> Wave<'a> {
             shadows: &mut self.shadows,
         };
         let mut alive = 0;
-        for i in 0..self.lanes.len() {
-            let packet = &self.rays[i / LANES];
-            let lane = self.lanes[i];
-            if lane.slot == Lane::NO_SLOT || !packet.is_active(i % LANES) {
-                continue;
+        for first in (0..self.lanes.len()).step_by(LANES) {
+            let mates = first..(first + LANES).min(self.lanes.len());
+            let hits = &self.hits[first / LANES];
+            let surfaces = self
+                .scene
+                .world()
+                .surfaces(self.vectorizer, &self.rays[first / LANES], hits);
+            let streams = std::array::from_fn(|i| match self.lanes.get(first + i) {
+                Some(lane) if lane.slot != Lane::NO_SLOT => stage.slots[lane.slot as usize].stream,
+                _ => self.idle_stream,
+            });
+            let numbers = StageNumbers::draw(self.vectorizer, &streams, depth);
+            for i in mates {
+                let (packet, lane) = (&self.rays[i / LANES], self.lanes[i]);
+                if lane.slot == Lane::NO_SLOT || !packet.is_active(i % LANES) {
+                    continue;
+                }
+                let ray = packet.get(i % LANES);
+                let surface = hits.get(i % LANES).map(|hit| surfaces.get(i % LANES, &ray, hit));
+                let numbers = numbers.lane(i % LANES);
+                let Some((next, ray)) = path.shade(&mut stage, &lane, &ray, surface, &numbers) else {
+                    continue;
+                };
+                if !ray.is_valid() {
+                    stage.slots[next.slot as usize].broken = true;
+                    continue;
+                }
+                // Lane `alive` was read at or before this one.
+                self.rays[alive / LANES].set(alive % LANES, &ray);
+                self.lanes[alive] = next;
+                alive += 1;
             }
-            let ray = packet.get(i % LANES);
-            let hit = self.hits[i / LANES].get(i % LANES);
-            let Some((next, next_ray)) = path.shade(&mut stage, &lane, &ray, hit) else {
-                continue;
-            };
-            if !next_ray.is_valid() {
-                stage.slots[next.slot as usize].broken = true;
-                continue;
-            }
-            // Lane `alive` was read at or before this one.
-            self.rays[alive / LANES].set(alive % LANES, &next_ray);
-            self.lanes[alive] = next;
-            alive += 1;
         }
         self.lanes.truncate(alive);
         self.rays.truncate(alive.div_ceil(LANES));
@@ -284,13 +314,16 @@ impl<'a> Wave<'a> {
     }
 }
 
-/// A pixel sample, its camera ray and how wide that is.
-fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slot, Ray, RayCone) {
-    let stream = view
-        .sampler
-        .start(pixel[0].cast_signed(), pixel[1].cast_signed(), sample);
-    let [film_x, film_y, lens_x, lens_y] = stream.draw4(FILM_GROUP);
-    let [u_lambda, u_time] = stream.draw2(DETECTOR_GROUP);
+/// A pixel sample, its camera ray and how wide that is, from the numbers of the two groups that the camera sample uses.
+#[inline]
+fn camera_slot(
+    scene: &Scene,
+    view: &View,
+    pixel: [u32; 2],
+    (sample, stream): (u32, SampleStream),
+    [film_x, film_y, lens_x, lens_y]: [f32; 4],
+    [u_lambda, u_time, ..]: [f32; 4],
+) -> (Slot, Ray, RayCone) {
     let filter = view.filter.sample(Vec2::new(film_x, film_y));
     let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
     let camera_sample = CameraSample {
@@ -314,4 +347,50 @@ fn camera_slot(scene: &Scene, view: &View, pixel: [u32; 2], sample: u32) -> (Slo
         broken: false,
     };
     (slot, ray, cone)
+}
+
+/// The random numbers of a scattering event of eight paths: see the table in [`integrator`](super).
+pub(super) struct StageNumbers {
+    light: [[f32; LANES]; 4],
+    bsdf: [[f32; LANES]; 4],
+}
+
+/// The random numbers of a scattering event.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EventNumbers {
+    /// Point of a light.
+    pub light: Vec2,
+    /// Which light.
+    pub which_light: f32,
+    /// Russian roulette.
+    pub roulette: f32,
+    /// Direction within a lobe.
+    pub bsdf: Vec2,
+    /// Which lobe.
+    pub lobe: f32,
+}
+
+impl StageNumbers {
+    fn draw(vectorizer: Vectorizer, streams: &[SampleStream; LANES], depth: u32) -> Self {
+        let group = FIRST_PATH_GROUP + 2 * depth;
+        Self {
+            light: SampleStream::draw4_lanes(vectorizer, streams, group),
+            bsdf: SampleStream::draw4_lanes(vectorizer, streams, group + 1),
+        }
+    }
+
+    #[inline]
+    fn lane(&self, i: usize) -> EventNumbers {
+        let ([x, y, which_light, roulette], [bsdf_x, bsdf_y, lobe, _]) = (
+            self.light.map(|numbers| numbers[i]),
+            self.bsdf.map(|numbers| numbers[i]),
+        );
+        EventNumbers {
+            light: Vec2::new(x, y),
+            which_light,
+            roulette,
+            bsdf: Vec2::new(bsdf_x, bsdf_y),
+            lobe,
+        }
+    }
 }

@@ -50,6 +50,26 @@ impl BsdfSample {
     }
 }
 
+/// What a BSDF is for a pair of directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfValue {
+    /// See [`Bsdf::f`].
+    pub f: SampledSpectrum,
+    /// See [`Bsdf::pdf`].
+    pub pdf: SolidAnglePdf,
+    /// |cos| of `wi` to the shading normal.
+    pub cos_theta: f32,
+}
+
+/// [`BsdfValue`] in the local frame of a lobe, where the cosine is z.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalValue {
+    /// As [`BsdfValue::f`].
+    pub f: SampledSpectrum,
+    /// As [`BsdfValue::pdf`].
+    pub pdf: f32,
+}
+
 /// [`BsdfSample`] in the local frame of a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalSample {
@@ -61,6 +81,19 @@ pub struct LocalSample {
     pub density: Density,
     /// As [`BsdfSample::eta`].
     pub eta: f32,
+}
+
+impl LocalSample {
+    /// One of a continuum.
+    #[inline]
+    pub(super) fn continuous(value: LocalValue, wi: Vec3, eta: f32) -> Self {
+        Self {
+            value: value.f,
+            wi,
+            density: Density::Continuous(SolidAnglePdf(value.pdf)),
+            eta,
+        }
+    }
 }
 
 /// The lobes there are.
@@ -94,44 +127,42 @@ impl Bsdf {
         }
     }
 
-    /// Whether [`Bsdf::sample_f`] looks at `u_lobe`.
-    #[inline]
-    pub fn has_several_lobes(&self) -> bool {
-        matches!(self.lobe, Lobe::Dielectric(_))
-    }
-
     /// |cos| of `w` to the shading normal.
     #[inline]
     pub fn abs_cos(&self, w: Vec3) -> f32 {
         w.dot(self.frame.n).abs()
     }
 
+    /// Value and density for a pair of directions, at the price of one. `None` where no light goes, or only by delta lobes; where
+    /// a surface could send light but is black, the value is 0 and the density is not.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<BsdfValue> {
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return None;
+        }
+        let value = match &self.lobe {
+            Lobe::Diffuse(lobe) => lobe.eval(wo, wi),
+            Lobe::Conductor(lobe) => lobe.eval(wo, wi),
+            Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
+        }?;
+        Some(BsdfValue {
+            f: value.f,
+            pdf: SolidAnglePdf(value.pdf),
+            cos_theta: wi.z.abs(),
+        })
+    }
+
     /// The value of the BSDF in sr⁻¹, without the cosine and without delta lobes. 0 where no light goes.
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> SampledSpectrum {
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        if wo.z == 0.0 || wi.z == 0.0 {
-            return SampledSpectrum::ZERO;
-        }
-        match &self.lobe {
-            Lobe::Diffuse(lobe) => lobe.f(wo, wi),
-            Lobe::Conductor(lobe) => lobe.f(wo, wi),
-            Lobe::Dielectric(lobe) => lobe.f(wo, wi, mode),
-        }
+        self.eval(wo, wi, mode).map_or(SampledSpectrum::ZERO, |value| value.f)
     }
 
     /// The density with which [`Bsdf::sample_f`] gives `wi` for `wo`; 0 for delta lobes.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> SolidAnglePdf {
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        if wo.z == 0.0 || wi.z == 0.0 {
-            return SolidAnglePdf(0.0);
-        }
-        match &self.lobe {
-            Lobe::Diffuse(lobe) => lobe.pdf(wo, wi),
-            Lobe::Conductor(lobe) => lobe.pdf(wo, wi),
-            Lobe::Dielectric(lobe) => lobe.pdf(wo, wi, mode),
-        }
+        self.eval(wo, wi, mode).map_or(SolidAnglePdf(0.0), |value| value.pdf)
     }
 
     /// Samples a direction for `wo`: `u_lobe` chooses among lobes, `u` within one. `None` carries nothing.

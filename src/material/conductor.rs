@@ -1,8 +1,7 @@
 //! Metals: a smooth mirror, or GGX microfacets that reflect.
 
-use super::{Density, Ggx, LocalSample, fresnel_complex};
+use super::{Density, Ggx, LocalSample, LocalValue, fresnel_complex};
 use crate::math::{Vec2, Vec3};
-use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
 /// Reflection by a conductor, on either side.
@@ -30,26 +29,18 @@ impl Conductor {
         }))
     }
 
-    /// See [`Bsdf::f`](super::Bsdf::f): F D G / (4 cos cos) (Torrance and Sparrow 1967).
-    pub fn f(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
-        let Some(ggx) = &self.roughness else {
-            return SampledSpectrum::ZERO;
-        };
-        let Some(m) = half_vector(wo, wi) else {
-            return SampledSpectrum::ZERO;
-        };
-        self.fresnel(wo.dot(m).abs()) * (ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs())
+    /// See [`Bsdf::eval`](super::Bsdf::eval): F D G / (4 cos cos) (Torrance and Sparrow 1967).
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
+        let ggx = self.roughness.as_ref()?;
+        let m = half_vector(wo, wi)?;
+        Some(self.eval_facet(ggx, wo, wi, m))
     }
 
-    /// See [`Bsdf::pdf`](super::Bsdf::pdf).
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> SolidAnglePdf {
-        let Some(ggx) = &self.roughness else {
-            return SolidAnglePdf(0.0);
-        };
-        let Some(m) = half_vector(wo, wi) else {
-            return SolidAnglePdf(0.0);
-        };
-        SolidAnglePdf(reflection_pdf(ggx, wo, m))
+    fn eval_facet(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3) -> LocalValue {
+        LocalValue {
+            f: self.fresnel(wo.dot(m).abs()) * (ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
+            pdf: reflection_pdf(ggx, wo, m),
+        }
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
@@ -63,12 +54,7 @@ impl Conductor {
             });
         };
         let (m, wi) = sample_reflection(ggx, wo, u)?;
-        Some(LocalSample {
-            value: self.fresnel(wo.dot(m).abs()) * (ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
-            wi,
-            density: Density::Continuous(SolidAnglePdf(reflection_pdf(ggx, wo, m))),
-            eta: 1.0,
-        })
+        Some(LocalSample::continuous(self.eval_facet(ggx, wo, wi, m), wi, 1.0))
     }
 }
 

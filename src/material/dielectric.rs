@@ -1,9 +1,8 @@
 //! Boundaries of transparent bodies: smooth (two delta lobes), or GGX microfacets that reflect and refract (Walter et al. 2007).
 
 use super::conductor::{half_vector, reflect, reflection_pdf};
-use super::{Density, Ggx, LocalSample, TransportMode, fresnel_dielectric, refract};
+use super::{Density, Ggx, LocalSample, LocalValue, TransportMode, fresnel_dielectric, refract};
 use crate::math::{Vec2, Vec3};
-use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
 /// Reflection and refraction at a dielectric boundary. The side of positive z is outside.
@@ -34,34 +33,17 @@ impl Dielectric {
         if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
-    /// See [`Bsdf::f`](super::Bsdf::f).
-    pub fn f(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> SampledSpectrum {
-        let Some(ggx) = &self.roughness else {
-            return SampledSpectrum::ZERO;
-        };
-        let value = if wo.z * wi.z > 0.0 {
-            half_vector(wo, wi).map_or(0.0, |m| self.reflection(ggx, wo, wi, m))
+    /// See [`Bsdf::eval`](super::Bsdf::eval).
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<LocalValue> {
+        let ggx = self.roughness.as_ref()?;
+        if wo.z * wi.z > 0.0 {
+            let m = half_vector(wo, wi)?;
+            Some(reflection(ggx, wo, wi, m, fresnel_dielectric(wo.dot(m), self.eta)))
         } else {
-            self.refraction_normal(wo, wi)
-                .map_or(0.0, |m| self.refraction(ggx, wo, wi, m, mode))
-        };
-        SampledSpectrum::splat(value)
-    }
-
-    /// See [`Bsdf::pdf`](super::Bsdf::pdf).
-    pub fn pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> SolidAnglePdf {
-        let Some(ggx) = &self.roughness else {
-            return SolidAnglePdf(0.0);
-        };
-        let pdf = if wo.z * wi.z > 0.0 {
-            half_vector(wo, wi).map_or(0.0, |m| {
-                reflection_pdf(ggx, wo, m) * fresnel_dielectric(wo.dot(m), self.eta)
-            })
-        } else {
-            self.refraction_normal(wo, wi)
-                .map_or(0.0, |m| self.refraction_pdf(ggx, wo, wi, m))
-        };
-        SolidAnglePdf(pdf)
+            let m = self.refraction_normal(wo, wi)?;
+            let transmittance = 1.0 - fresnel_dielectric(wo.dot(m), self.eta);
+            Some(self.refraction(ggx, wo, wi, m, transmittance, mode))
+        }
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
@@ -73,27 +55,15 @@ impl Dielectric {
         let reflectance = fresnel_dielectric(wo.dot(m), self.eta);
         if u_lobe < reflectance {
             let wi = reflect(wo, m);
-            if wo.z * wi.z <= 0.0 {
-                return None;
-            }
-            return Some(LocalSample {
-                value: SampledSpectrum::splat(self.reflection(ggx, wo, wi, m)),
-                wi,
-                density: Density::Continuous(SolidAnglePdf(reflection_pdf(ggx, wo, m) * reflectance)),
-                eta: 1.0,
-            });
+            return (wo.z * wi.z > 0.0)
+                .then(|| LocalSample::continuous(reflection(ggx, wo, wi, m, reflectance), wi, 1.0));
         }
         let (wi, eta) = refract(wo, m, self.eta)?;
         if wo.z * wi.z >= 0.0 {
             return None;
         }
-        let pdf = self.refraction_pdf(ggx, wo, wi, m);
-        (pdf > 0.0).then(|| LocalSample {
-            value: SampledSpectrum::splat(self.refraction(ggx, wo, wi, m, mode)),
-            wi,
-            density: Density::Continuous(SolidAnglePdf(pdf)),
-            eta,
-        })
+        let value = self.refraction(ggx, wo, wi, m, 1.0 - reflectance, mode);
+        (value.pdf > 0.0).then(|| LocalSample::continuous(value, wi, eta))
     }
 
     fn sample_smooth(&self, wo: Vec3, u_lobe: f32, mode: TransportMode) -> Option<LocalSample> {
@@ -124,27 +94,32 @@ impl Dielectric {
         (m.dot(wi) * wi.z > 0.0 && m.dot(wo) * wo.z > 0.0).then_some(m)
     }
 
-    fn reflection(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
-        fresnel_dielectric(wo.dot(m), self.eta) * ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs()
-    }
-
-    /// Walter et al. 2007, equation 21; scaled by the change of solid angle where radiance is carried.
-    fn refraction(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3, mode: TransportMode) -> f32 {
+    /// Walter et al. 2007, equations 21 and 17; scaled by the change of solid angle where radiance is carried.
+    fn refraction(
+        &self,
+        ggx: &Ggx,
+        wo: Vec3,
+        wi: Vec3,
+        m: Vec3,
+        transmittance: f32,
+        mode: TransportMode,
+    ) -> LocalValue {
         let eta = self.eta_across(wo);
-        let transmittance = 1.0 - fresnel_dielectric(wo.dot(m), self.eta);
-        let denominator = (wi.dot(m) + wo.dot(m) / eta).powi(2);
-        transmittance
-            * ggx.d(m)
-            * ggx.g(wo, wi)
-            * (wi.dot(m) * wo.dot(m) / (wi.z * wo.z * denominator)).abs()
-            * radiance_scale(eta, mode)
+        let (cos_o, cos_i) = (wo.dot(m), wi.dot(m));
+        let jacobian = cos_i.abs() / (cos_i + cos_o / eta).powi(2);
+        let f = transmittance * ggx.d(m) * ggx.g(wo, wi) * (jacobian * cos_o / (wi.z * wo.z)).abs();
+        LocalValue {
+            f: SampledSpectrum::splat(f * radiance_scale(eta, mode)),
+            pdf: transmittance * ggx.visible_normal_pdf(wo, m) * jacobian,
+        }
     }
+}
 
-    /// Walter et al. 2007, equation 17.
-    fn refraction_pdf(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
-        let transmittance = 1.0 - fresnel_dielectric(wo.dot(m), self.eta);
-        let denominator = (wi.dot(m) + wo.dot(m) / self.eta_across(wo)).powi(2);
-        ggx.visible_normal_pdf(wo, m) * wi.dot(m).abs() / denominator * transmittance
+/// What facets of normal `m` and the given reflectance reflect.
+fn reflection(ggx: &Ggx, wo: Vec3, wi: Vec3, m: Vec3, reflectance: f32) -> LocalValue {
+    LocalValue {
+        f: SampledSpectrum::splat(reflectance * ggx.d(m) * ggx.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
+        pdf: reflectance * reflection_pdf(ggx, wo, m),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use super::{Density, LocalSample};
+use super::{Density, LocalSample, LocalValue};
 use crate::math::{Vec2, Vec3};
 use crate::sampling::{SolidAnglePdf, warp};
 use crate::spectrum::SampledSpectrum;
@@ -19,20 +19,13 @@ impl Diffuse {
         Self { albedo }
     }
 
-    /// See [`Bsdf::f`](super::Bsdf::f).
+    /// See [`Bsdf::eval`](super::Bsdf::eval).
     #[inline]
-    pub fn f(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
-        if wo.z * wi.z > 0.0 {
-            self.albedo * FRAC_1_PI
-        } else {
-            SampledSpectrum::ZERO
-        }
-    }
-
-    /// See [`Bsdf::pdf`](super::Bsdf::pdf).
-    #[inline]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> SolidAnglePdf {
-        SolidAnglePdf(if wo.z * wi.z > 0.0 { wi.z.abs() * FRAC_1_PI } else { 0.0 })
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
+        (wo.z * wi.z > 0.0).then(|| LocalValue {
+            f: self.albedo * FRAC_1_PI,
+            pdf: wi.z.abs() * FRAC_1_PI,
+        })
     }
 
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).

@@ -10,7 +10,7 @@ mod fresnel;
 mod microfacet;
 mod roughness;
 
-pub use bsdf::{Bsdf, BsdfSample, Density, LocalSample, TransportMode};
+pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, LocalSample, LocalValue, TransportMode};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

@@ -2,6 +2,7 @@
 
 use super::hash::{GOLDEN, combine, mix64, unit_f32};
 use super::sobol::{dimension_1_reversed, dimensions_2_3_reversed, scramble_reversed};
+use crate::math::{Kernel, Vectorizer};
 
 /// How the samples of a pixel relate to one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,51 +84,28 @@ impl SampleStream {
     #[inline]
     pub fn draw4(&self, group: u32) -> [f32; 4] {
         match self.kind {
-            SamplerKind::Independent => {
-                let [a, b] = self.independent_bits(group);
-                [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32].map(unit_f32)
-            }
-            SamplerKind::Sobol => {
-                let (index, [a, b]) = self.shuffled_index(group);
-                let (second, third) = dimensions_2_3_reversed(index);
-                [
-                    scrambled_unit(index, a as u32),
-                    scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
-                    scrambled_unit(second, b as u32),
-                    scrambled_unit(third, (b >> 32) as u32),
-                ]
-            }
+            SamplerKind::Independent => independent(self.key, self.reversed_index, group),
+            SamplerKind::Sobol => sobol(self.key, self.reversed_index, group),
         }
     }
 
     /// The first number of `group`, in [0, 1).
     #[inline]
     pub fn draw1(&self, group: u32) -> f32 {
-        match self.kind {
-            SamplerKind::Independent => unit_f32(self.independent_bits(group)[0] as u32),
-            SamplerKind::Sobol => {
-                let (index, [a, _]) = self.shuffled_index(group);
-                scrambled_unit(index, a as u32)
-            }
-        }
+        self.draw4(group)[0]
     }
 
     /// The first two numbers of `group`, in [0, 1).
     #[inline]
     pub fn draw2(&self, group: u32) -> [f32; 2] {
-        match self.kind {
-            SamplerKind::Independent => {
-                let a = self.independent_bits(group)[0];
-                [a as u32, (a >> 32) as u32].map(unit_f32)
-            }
-            SamplerKind::Sobol => {
-                let (index, [a, _]) = self.shuffled_index(group);
-                [
-                    scrambled_unit(index, a as u32),
-                    scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
-                ]
-            }
-        }
+        let [x, y, ..] = self.draw4(group);
+        [x, y]
+    }
+
+    /// [`Self::draw4`] of `N` streams of one sampler at once, lane by lane: the same numbers, several times faster.
+    #[inline]
+    pub fn draw4_lanes<const N: usize>(vectorizer: Vectorizer, streams: &[Self; N], group: u32) -> [[f32; N]; 4] {
+        vectorizer.run(DrawLanes { streams, group })
     }
 
     /// The stream of branch `n` of this one, for a path that splits: independent of this stream, of its other branches and
@@ -141,34 +119,70 @@ impl SampleStream {
             ..*self
         }
     }
+}
 
-    /// 128 random bits for (key, index, group).
-    #[inline]
-    fn independent_bits(&self, group: u32) -> [u64; 2] {
-        let hash = self.split_mix(u64::from(self.reversed_index) << 32 | u64::from(group));
-        [hash, mix64(hash.wrapping_add(GOLDEN))]
-    }
+/// See [`SampleStream::draw4_lanes`].
+struct DrawLanes<'a, const N: usize> {
+    streams: &'a [SampleStream; N],
+    group: u32,
+}
 
-    /// The index of the Sobol point that this sample takes in `group`, and the seeds of its dimensions' scrambles. The
-    /// index is shuffled by a nested scramble as well, so that the samples of a prefix of 2^k keep to one another while
-    /// different groups are paired at random.
-    #[inline]
-    fn shuffled_index(&self, group: u32) -> (u32, [u64; 2]) {
-        let hash = self.split_mix(u64::from(group));
-        let shuffled = scramble_reversed(self.reversed_index, hash as u32);
-        let seeds = [mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32))];
-        (shuffled.reverse_bits(), seeds)
-    }
+impl<const N: usize> Kernel for DrawLanes<'_, N> {
+    type Output = [[f32; N]; 4];
 
-    /// The number at place `counter` of the SplitMix64 generator (Steele, Lea and Flood 2014) whose state is the key. Keys are
-    /// hashes, so that no two of these sequences come near each other.
-    #[inline]
-    fn split_mix(&self, counter: u64) -> u64 {
-        mix64(self.key.wrapping_add(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let (keys, indices) = (self.streams.map(|s| s.key), self.streams.map(|s| s.reversed_index));
+        let mut numbers = [[0.0; N]; 4];
+        let [x, y, z, w] = &mut numbers;
+        match self.streams[0].kind {
+            SamplerKind::Independent => {
+                for i in 0..N {
+                    [x[i], y[i], z[i], w[i]] = independent(keys[i], indices[i], self.group);
+                }
+            }
+            SamplerKind::Sobol => {
+                for i in 0..N {
+                    [x[i], y[i], z[i], w[i]] = sobol(keys[i], indices[i], self.group);
+                }
+            }
+        }
+        numbers
     }
 }
 
-#[inline]
+/// Four uniform numbers for (key, index, group).
+#[inline(always)]
+fn independent(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
+    let a = split_mix(key, u64::from(reversed_index) << 32 | u64::from(group));
+    let b = mix64(a.wrapping_add(GOLDEN));
+    [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32].map(unit_f32)
+}
+
+/// The Sobol point that this sample takes in `group`, scrambled. The index is shuffled by a nested scramble as well, so that the
+/// samples of a prefix of 2^k keep to one another while different groups are paired at random.
+#[inline(always)]
+fn sobol(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
+    let hash = split_mix(key, u64::from(group));
+    let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
+    let index = scramble_reversed(reversed_index, hash as u32).reverse_bits();
+    let (second, third) = dimensions_2_3_reversed(index);
+    [
+        scrambled_unit(index, a as u32),
+        scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
+        scrambled_unit(second, b as u32),
+        scrambled_unit(third, (b >> 32) as u32),
+    ]
+}
+
+/// The number at place `counter` of the SplitMix64 generator (Steele, Lea and Flood 2014) whose state is the key. Keys are
+/// hashes, so that no two of these sequences come near each other.
+#[inline(always)]
+fn split_mix(key: u64, counter: u64) -> u64 {
+    mix64(key.wrapping_add(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
+}
+
+#[inline(always)]
 fn scrambled_unit(reversed: u32, seed: u32) -> f32 {
     unit_f32(scramble_reversed(reversed, seed).reverse_bits())
 }
@@ -197,6 +211,19 @@ mod tests {
             ];
             for (i, a) in others.iter().enumerate() {
                 assert!(*a != four && others[..i].iter().all(|b| a != b), "{kind:?} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_get_the_numbers_of_their_streams() {
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+            let sampler = Sampler::new(kind, 3, 64);
+            let streams: [_; 8] =
+                std::array::from_fn(|i| sampler.start(i as i32 - 3, 7, 5 * i as u32).branch(i as u32 % 3));
+            let lanes = SampleStream::draw4_lanes(Vectorizer::default(), &streams, 11);
+            for (i, stream) in streams.iter().enumerate() {
+                assert_eq!(lanes.map(|numbers| numbers[i]), stream.draw4(11), "{kind:?}");
             }
         }
     }

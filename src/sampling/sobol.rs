@@ -9,7 +9,7 @@
 
 /// Scrambles a reversed integer: whether a bit is flipped depends on the seed and on the bits below it only, so that it is
 /// a random nested permutation of the digits.
-#[inline]
+#[inline(always)]
 pub const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
@@ -20,7 +20,7 @@ pub const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
 
 /// Dimension 1 of point `index`, reversed: the product of the index with Pascal's triangle modulo 2. Pascal's matrix of 32
 /// rows is a fivefold Kronecker power, so five steps suffice.
-#[inline]
+#[inline(always)]
 pub const fn dimension_1_reversed(index: u32) -> u32 {
     let mut x = index;
     x ^= (x >> 1) & 0x5555_5555;
@@ -31,7 +31,7 @@ pub const fn dimension_1_reversed(index: u32) -> u32 {
 }
 
 /// Dimensions 2 and 3 of point `index`, reversed.
-#[inline]
+#[inline(always)]
 pub fn dimensions_2_3_reversed(index: u32) -> (u32, u32) {
     let mut both = 0;
     for (digit, row) in HEX_DIGITS.iter().enumerate() {

@@ -89,7 +89,6 @@ mod tests {
         SurfaceInteraction {
             p: Vec3::ZERO,
             error: 0.0,
-            t: 1.0,
             ng: Vec3::Z,
             ns: Vec3::Z,
             dpdu: Vec3::new(2.0, 0.0, 0.0),

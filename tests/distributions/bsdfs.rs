@@ -58,7 +58,6 @@ impl Kind {
         let surface = SurfaceInteraction {
             p: Vec3::ZERO,
             error: 0.0,
-            t: 1.0,
             ng: ns,
             ns,
             dpdu,

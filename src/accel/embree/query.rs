@@ -10,6 +10,7 @@ use super::callbacks::QueryData;
 use super::scene::SceneHandle;
 use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, LANES, RayPacket};
+use crate::math::{Mat4, Vec4};
 
 /// Asserts that a `RayPacket` is an `RTCRay8`: queries pass the one for the other.
 macro_rules! assert_same_layout {
@@ -104,25 +105,19 @@ impl Query<'_> {
     /// Occlusion, in streams of single rays. Only where there are streams (`EMBREE_HAS_STREAMS`).
     pub fn occluded_stream(&self, rays: &mut [RayPacket]) {
         self.run(|query| {
-            let mut stream = Vec::with_capacity(STREAM_PACKETS * LANES);
+            let mut stream = [[SingleRay::default(); LANES]; STREAM_PACKETS];
             for packets in rays.chunks_mut(STREAM_PACKETS) {
-                stream.clear();
-                for packet in &*packets {
-                    stream.extend(active_lanes(packet).map(|lane| single(packet, lane)));
+                for (singles, packet) in stream.iter_mut().zip(&*packets) {
+                    *singles = single_rays(packet);
                 }
-                let count = stream.len() as c_uint;
-                // SAFETY: the scene is committed; the stream has `count` rays, and is this thread's own, as is the query.
-                let traced =
-                    unsafe { ffi::embree_occluded1_stream(self.scene.raw(), query, stream.as_mut_ptr(), count) };
+                let count = (packets.len() * LANES) as c_uint;
+                let first = stream.as_mut_ptr().cast::<ffi::RTCRay>();
+                // SAFETY: the scene is committed; the stream has at least `count` rays of the right layout, as asserted below, and is
+                // this thread's own, as is the query. Rays that take no part have tnear > tfar, by which streams leave them out.
+                let traced = unsafe { ffi::embree_occluded1_stream(self.scene.raw(), query, first, count) };
                 debug_assert!(traced, "streams are asked for only where they exist");
-                let mut traced = stream.iter();
-                for packet in packets {
-                    let active: [bool; LANES] = std::array::from_fn(|lane| packet.is_active(lane));
-                    for lane in (0..LANES).filter(|&lane| active[lane]) {
-                        if traced.next().is_some_and(|ray| ray.tfar == f32::NEG_INFINITY) {
-                            packet.tfar[lane] = f32::NEG_INFINITY;
-                        }
-                    }
+                for (singles, packet) in stream.iter().zip(packets) {
+                    packet.tfar = std::array::from_fn(|lane| singles[lane].0[2].x);
                 }
             }
         });
@@ -142,25 +137,41 @@ impl Query<'_> {
     }
 }
 
-fn active_lanes(packet: &RayPacket) -> impl Iterator<Item = usize> {
-    (0..LANES).filter(|&lane| packet.is_active(lane))
-}
+/// An `RTCRay`: (origin, tnear), (direction, time), (tfar, mask, id, flags), the last three as bits.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(transparent)]
+struct SingleRay([Vec4; 3]);
 
-/// One ray of a packet.
+const _: () = {
+    assert!(size_of::<SingleRay>() == size_of::<ffi::RTCRay>());
+    assert!(align_of::<SingleRay>() >= align_of::<ffi::RTCRay>());
+    assert!(offset_of!(ffi::RTCRay, org_x) == 0 && offset_of!(ffi::RTCRay, tnear) == 12);
+    assert!(offset_of!(ffi::RTCRay, dir_x) == 16 && offset_of!(ffi::RTCRay, time) == 28);
+    assert!(offset_of!(ffi::RTCRay, tfar) == 32 && offset_of!(ffi::RTCRay, mask) == 36);
+    assert!(offset_of!(ffi::RTCRay, id) == 40 && offset_of!(ffi::RTCRay, flags) == 44);
+};
+
+/// The rays of a packet: six transpositions of 4 x 4 numbers.
 #[inline]
-fn single(packet: &RayPacket, lane: usize) -> ffi::RTCRay {
-    ffi::RTCRay {
-        org_x: packet.org_x[lane],
-        org_y: packet.org_y[lane],
-        org_z: packet.org_z[lane],
-        tnear: packet.tnear[lane],
-        dir_x: packet.dir_x[lane],
-        dir_y: packet.dir_y[lane],
-        dir_z: packet.dir_z[lane],
-        time: packet.time[lane],
-        tfar: packet.tfar[lane],
-        mask: packet.mask[lane],
-        id: packet.id[lane],
-        flags: 0,
+fn single_rays(packet: &RayPacket) -> [SingleRay; LANES] {
+    let bits = |row: &[u32; LANES]| row.map(f32::from_bits);
+    let thirds = [
+        [packet.org_x, packet.org_y, packet.org_z, packet.tnear],
+        [packet.dir_x, packet.dir_y, packet.dir_z, packet.time],
+        [packet.tfar, bits(&packet.mask), bits(&packet.id), bits(&packet.flags)],
+    ];
+    let mut singles = [SingleRay::default(); LANES];
+    for (third, rows) in thirds.iter().enumerate() {
+        for half in [0, 4] {
+            let [a, b, c, d] = rows.each_ref().map(|row| Vec4::from_slice(&row[half..half + 4]));
+            let lanes = Mat4::from_cols(a, b, c, d).transpose();
+            for (i, lane) in [lanes.x_axis, lanes.y_axis, lanes.z_axis, lanes.w_axis]
+                .into_iter()
+                .enumerate()
+            {
+                singles[half + i].0[third] = lane;
+            }
+        }
     }
+    singles
 }
