@@ -18,7 +18,7 @@ struct Motion {
 }
 
 /// The transform at one time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Pose {
     /// The light's origin, world space.
     pub position: Vec3,
@@ -56,7 +56,7 @@ impl Place {
     #[inline]
     pub(super) fn at(&self, time: f32) -> Pose {
         match &self.motion {
-            None => self.start,
+            None => self.start.clone(),
             Some(motion) => Pose::new(&(motion.world_from_light.at(time) * motion.local)),
         }
     }
