@@ -61,7 +61,11 @@ fn record(name: &str) -> std::sync::Arc<RayStreams> {
 }
 
 /// The time of `waves`, of which `trace` tells that of each, `iterations` times.
-fn timed<W>(iterations: u64, waves: impl Iterator<Item = W> + Clone, mut trace: impl FnMut(W) -> Duration) -> Duration {
+fn timed<W>(
+    iterations: u64,
+    waves: &(impl Iterator<Item = W> + Clone),
+    mut trace: impl FnMut(W) -> Duration,
+) -> Duration {
     (0..iterations).flat_map(|_| waves.clone()).map(&mut trace).sum()
 }
 
@@ -100,7 +104,7 @@ fn benches(c: &mut Criterion) {
             for (backend, scene) in &built {
                 group.bench_function(BenchmarkId::from_parameter(backend), |b| {
                     b.iter_custom(|iterations| {
-                        timed(iterations, packets.chunks(WAVE), |packets| {
+                        timed(iterations, &packets.chunks(WAVE), |packets| {
                             wave.clear();
                             wave.extend_from_slice(packets);
                             let start = Instant::now();
@@ -112,7 +116,7 @@ fn benches(c: &mut Criterion) {
                 group.bench_function(BenchmarkId::from_parameter(format!("{backend}-packed")), |b| {
                     let mut hot = Vec::with_capacity(WAVE * LANES);
                     b.iter_custom(|iterations| {
-                        timed(iterations, rays.chunks(WAVE * LANES), |rays| {
+                        timed(iterations, &rays.chunks(WAVE * LANES), |rays| {
                             hot.clear();
                             hot.extend_from_slice(rays);
                             let start = Instant::now();
@@ -163,7 +167,7 @@ mod raw {
         let scene = EmbreeScene::build(world, &BuildOptions::default()).expect("it was built before");
         group.bench_function("embree-raw", |b| {
             b.iter_custom(|iterations| {
-                timed(iterations, packets.chunks(WAVE), |packets| {
+                timed(iterations, &packets.chunks(WAVE), |packets| {
                     let mut ready = ready(kind, packets);
                     let start = Instant::now();
                     trace(&scene, kind, &mut ready);

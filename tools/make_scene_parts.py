@@ -8,6 +8,7 @@ from. Needs nothing but Python 3. The same Python gives the same bytes.
 import math
 import pathlib
 
+import lamps
 import plants
 from pictures import png
 from ply import Mesh, lathe, spline
@@ -207,13 +208,14 @@ def main():
         "goblet": goblet(),
         "pawn": pawn(),
         "vane": vane(),
+        **lamps.meshes(),
         **plants.meshes(),
     }
     for name, mesh in meshes.items():
         path = PARTS / f"{name}.ply.gz"
         mesh.write(path)
         print(f"{path.name}: {len(mesh.triangles)} triangles, {path.stat().st_size} bytes")
-    for name, text in {"pennant": flag_text(), "forest": plants.forest_text()}.items():
+    for name, text in {"pennant": flag_text(), "poles": lamps.pole_text(), "forest": plants.forest_text()}.items():
         path = PARTS / f"{name}.pbrt"
         path.write_text(text)
         print(f"{path.name}: {len(text)} bytes")

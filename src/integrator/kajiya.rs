@@ -106,7 +106,7 @@ impl KajiyaIntegrator {
             return from_bsdf(numbers.lobe).map(|(direction, _)| direction);
         }
         if !bsdf.has_delta() {
-            return self.from_distribution(bsdf, wo, numbers.lobe, numbers.bsdf);
+            return self.drawn_from_distribution(bsdf, wo, numbers.lobe, numbers.bsdf);
         }
         let twice = |direction: Direction| Direction {
             weight: direction.weight * 2.0,
@@ -116,13 +116,13 @@ impl KajiyaIntegrator {
             let (direction, is_delta) = from_bsdf(2.0 * numbers.lobe)?;
             is_delta.then(|| twice(direction))
         } else {
-            self.from_distribution(bsdf, wo, 2.0 * numbers.lobe - 1.0, numbers.bsdf)
+            self.drawn_from_distribution(bsdf, wo, 2.0 * numbers.lobe - 1.0, numbers.bsdf)
                 .map(twice)
         }
     }
 
     /// Draws a direction from P: over the hemisphere of `wo`, or over both where the surface transmits.
-    fn from_distribution(&self, bsdf: &Bsdf, wo: Vec3, u_side: f32, u: Vec2) -> Option<Direction> {
+    fn drawn_from_distribution(&self, bsdf: &Bsdf, wo: Vec3, u_side: f32, u: Vec2) -> Option<Direction> {
         let (mut local, pdf) = match self.distribution {
             Distribution::Cosine => {
                 let w = warp::sample_cosine_hemisphere(u);

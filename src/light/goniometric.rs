@@ -39,7 +39,7 @@ impl GoniometricLight {
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let cell = SphereMap::EqualArea.cell(pose.to_light(w), [self.side; 2]);
+            let cell = SphereMap::EqualArea.cell(pose.local_direction(w), [self.side; 2]);
             self.intensity.sample(lambda) * self.factors[cell.y * self.side + cell.x]
         })
     }

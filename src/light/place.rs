@@ -18,7 +18,7 @@ struct Motion {
 }
 
 /// The transform at one time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Pose {
     /// The light's origin, world space.
     pub position: Vec3,
@@ -56,7 +56,7 @@ impl Place {
     #[inline]
     pub(super) fn at(&self, time: f32) -> Pose {
         match &self.motion {
-            None => self.start,
+            None => self.start.clone(),
             Some(motion) => Pose::new(&(motion.world_from_light.at(time) * motion.local)),
         }
     }
@@ -98,13 +98,13 @@ impl Pose {
 
     /// A direction of the light's space in the world, of unit length.
     #[inline]
-    pub fn to_world(&self, w: Vec3) -> Vec3 {
+    pub fn world_direction(&self, w: Vec3) -> Vec3 {
         (self.world_from_light * w).normalize()
     }
 
     /// A direction of the world in the light's space, of unit length.
     #[inline]
-    pub fn to_light(&self, w: Vec3) -> Vec3 {
+    pub fn local_direction(&self, w: Vec3) -> Vec3 {
         (self.light_from_world * w).normalize()
     }
 
@@ -119,6 +119,6 @@ impl Pose {
     /// +z of the light in the world.
     #[inline]
     pub fn axis(&self) -> Vec3 {
-        self.to_world(Vec3::Z)
+        self.world_direction(Vec3::Z)
     }
 }

@@ -81,7 +81,7 @@ impl ProjectionLight {
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let pixel = self.screen.pixel(pose.to_light(w));
+            let pixel = self.screen.pixel(pose.local_direction(w));
             pixel.map_or(SampledSpectrum::ZERO, |[x, y]| self.image.sample(x, y, lambda))
         })
     }

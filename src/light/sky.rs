@@ -43,7 +43,7 @@ impl ImageEnvironment {
 
     #[inline]
     pub(super) fn le(&self, w: Vec3, time: f32, lambda: &Wavelengths) -> SampledSpectrum {
-        let cell = self.map.cell(self.place.at(time).to_light(w), self.image.size());
+        let cell = self.map.cell(self.place.at(time).local_direction(w), self.image.size());
         self.image.sample(cell.x, cell.y, lambda)
     }
 
@@ -52,7 +52,7 @@ impl ImageEnvironment {
             return SolidAnglePdf(0.0);
         };
         let (pose, size) = (self.place.at(time), self.image.size());
-        let cell = self.map.cell(pose.to_light(w), size);
+        let cell = self.map.cell(pose.local_direction(w), size);
         let pdf = distribution.probability(cell.x, cell.y) / self.map.solid_angle(cell.y, size);
         SolidAnglePdf(pdf * pose.stretch(w))
     }
@@ -66,7 +66,7 @@ impl ImageEnvironment {
     ) -> Option<(Vec3, SolidAnglePdf, SampledSpectrum)> {
         let (cell, probability) = self.distribution.as_ref()?.sample(u);
         let (pose, size) = (self.place.at(time), self.image.size());
-        let w = pose.to_world(self.map.direction(&cell, size));
+        let w = pose.world_direction(self.map.direction(&cell, size));
         let pdf = probability / self.map.solid_angle(cell.y, size) * pose.stretch(w);
         Some((w, SolidAnglePdf(pdf), self.image.sample(cell.x, cell.y, lambda)))
     }

@@ -35,7 +35,7 @@ impl SpotLight {
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let cos = pose.to_light(w).z;
+            let cos = pose.local_direction(w).z;
             self.intensity.sample(lambda) * smooth_step(cos, self.cos_end, self.cos_start)
         })
     }

@@ -115,7 +115,7 @@ impl LightBuilder {
                 Light::Distant(DistantLight::new(place, spectrum.scaled(scale(1.0)?)))
             }
             LightKind::Infinite { image, portal } => {
-                let light = self.environment(desc, &world_from_light, spectrum, image.as_deref(), *portal)?;
+                let light = self.environment(desc, &world_from_light, &spectrum, image.as_deref(), *portal)?;
                 self.environments.push(LightId(self.lights.len() as u32));
                 Light::Environment(light)
             }
@@ -128,12 +128,12 @@ impl LightBuilder {
         &self,
         desc: &LightDesc,
         world_from_light: &AnimatedTransform,
-        spectrum: CompiledSpectrum,
+        spectrum: &CompiledSpectrum,
         image: Option<&Image>,
         portal: Option<[DVec3; 4]>,
     ) -> Result<EnvironmentLight, String> {
-        let portal = portal.map(|corners| {
-            let portal = Portal::new(corners.map(|p| p.as_vec3()));
+        let portal = portal.map(|corners: [DVec3; 4]| {
+            let portal = Portal::new(std::array::from_fn(|i| corners[i].as_vec3()));
             portal.ok_or("the portal must be a rectangle, its corners in order")
         });
         let portal = portal.transpose()?;

@@ -52,7 +52,14 @@ fn wrong(parameter: &Parameter) -> Vec<(String, String)> {
             cases.push(case("string", "\"a\"", "takes 2 values, found 1"));
             cases.push(case("string", "[\"a\" \"b\"]", "there is no named material `b`"));
         }
-        ParameterKind::File => cases.push(case("string", "\"missing.bsdf\"", "cannot read the measured material")),
+        ParameterKind::File => {
+            let what = if parameter.name == "normalmap" {
+                "image"
+            } else {
+                "measured material"
+            };
+            cases.push(case("string", "\"missing.bsdf\"", &format!("cannot read the {what}")));
+        }
         _ => {}
     }
     if matches!(parameter.kind, ParameterKind::FloatTexturedIn { .. }) {

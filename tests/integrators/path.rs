@@ -15,7 +15,7 @@ fn changed(built: &Built, change: impl FnOnce(&mut PathIntegrator)) -> Integrato
             change(&mut path);
             Integrator::Path(path)
         }
-        other => panic!("{other:?}"),
+        Integrator::Kajiya(_) => panic!("not a path tracer"),
     }
 }
 
