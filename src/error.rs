@@ -188,10 +188,12 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+/// All of them, and how many there are where that is not seen at a glance.
 fn join(diagnostics: &[Diagnostic]) -> String {
-    diagnostics
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join("\n")
+    const FEW: usize = 3;
+    let mut lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+    if diagnostics.len() > FEW {
+        lines.push(format!("{} errors", diagnostics.len()));
+    }
+    lines.join("\n")
 }

@@ -584,6 +584,23 @@ fn warnings_are_capped_too() {
 }
 
 #[test]
+fn long_lists_end_with_a_count_and_what_would_be_forgiven() {
+    let text = format!(
+        "WorldBegin {}Shape \"sphere\" \"float radius\" -1",
+        "Material \"hair\"\n".repeat(4)
+    );
+    let errors = errors(&text);
+    assert_eq!(errors.len(), 5);
+    let help = errors[4].help.as_deref().unwrap_or_default();
+    assert!(
+        help.ends_with("4 of these 5 errors are warnings with --lenient"),
+        "{help}"
+    );
+    let printed = lucerna::Error::Scene(errors).to_string();
+    assert!(printed.ends_with("\n5 errors"), "{printed}");
+}
+
+#[test]
 fn textures() {
     let cases: [Case; 14] = [
         (

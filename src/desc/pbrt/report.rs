@@ -19,6 +19,8 @@ pub(super) struct Report {
     warnings: Vec<(Span, Diagnostic)>,
     warnings_left_out: usize,
     lenient: bool,
+    /// Errors that would be warnings with `--lenient`.
+    forgivable: usize,
 }
 
 impl Report {
@@ -109,6 +111,7 @@ impl Report {
         if self.lenient {
             self.warning_with_help(span, format!("{}: {instead}", message.into()), help);
         } else {
+            self.forgivable += 1;
             self.error_with_help(span, message, help);
         }
     }
@@ -123,9 +126,23 @@ impl Report {
         !self.errors.is_empty()
     }
 
-    /// The errors, file by file, in order.
+    /// The errors, file by file, in order. Where there are many, the last one says what `--lenient` would forgive.
     pub fn into_errors(self) -> Vec<Diagnostic> {
-        in_order(self.errors)
+        const FEW: usize = 3;
+        let mut errors = in_order(self.errors);
+        let (count, forgivable) = (errors.len(), self.forgivable.min(errors.len()));
+        if count > FEW
+            && forgivable > 0
+            && let Some(last) = errors.last_mut()
+        {
+            let advice = format!("{forgivable} of these {count} errors are warnings with --lenient");
+            last.help = Some(
+                last.help
+                    .take()
+                    .map_or(advice.clone(), |help| format!("{help}; {advice}")),
+            );
+        }
+        errors
     }
 
     /// The sources and the warnings, file by file, in order.
