@@ -16,8 +16,8 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "scenes" / "oracle.pbrt"
 PLOT = ROOT / "docs" / "images" / "oracle.svg"
-COUNTS = [1, 4, 16, 64, 256, 1024]
-REFERENCE_SAMPLES = 65536
+COUNTS = [1, 4, 16, 64, 256]
+REFERENCE_SAMPLES = 8192
 
 # Name, colour, dash, integrator as in a scene file, further options.
 CURVES = [

@@ -28,7 +28,7 @@ pub static SAMPLERS: [SamplerEntry; 5] = [
     SamplerEntry {
         name: "halton",
         doc: "Owen-scrambled Halton points, a prime base for each dimension",
-        parameters: &[&PIXEL_SAMPLES],
+        parameters: &[&HALTON_SAMPLES],
     },
     SamplerEntry {
         name: "sobol",
@@ -52,6 +52,7 @@ const SAMPLES_DOC: &str = "Samples a pixel";
 const MOST_SAMPLES: i32 = 1 << 24;
 
 pub(super) static INDEPENDENT_SAMPLES: Parameter = integer("pixelsamples", 4, MOST_SAMPLES, SAMPLES_DOC);
+pub(super) static HALTON_SAMPLES: Parameter = integer("pixelsamples", 16, MOST_SAMPLES, SAMPLES_DOC);
 pub(super) static PIXEL_SAMPLES: Parameter = integer(
     "pixelsamples",
     16,

@@ -36,22 +36,21 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
             "zsobol"
         }
     };
-    let samples = |reader: &mut ParamReader<'_>| reader.integer_by(&kinds::PIXEL_SAMPLES).unsigned_abs();
+    let samples = |reader: &mut ParamReader<'_>, by| reader.integer_by(by).unsigned_abs();
     let (kind, pixel_samples) = match kind {
-        "independent" => {
-            let samples = reader.integer_by(&kinds::INDEPENDENT_SAMPLES);
-            (SamplerKind::Independent, samples.unsigned_abs())
-        }
+        "independent" => (
+            SamplerKind::Independent,
+            samples(&mut reader, &kinds::INDEPENDENT_SAMPLES),
+        ),
         "stratified" => {
-            let [columns, rows] =
-                [&kinds::X_SAMPLES, &kinds::Y_SAMPLES].map(|side| reader.integer_by(side).unsigned_abs());
+            let [columns, rows] = [&kinds::X_SAMPLES, &kinds::Y_SAMPLES].map(|side| samples(&mut reader, side));
             let jitter = reader.bool_by(&kinds::JITTER);
             let strata = Strata { columns, rows, jitter };
             (SamplerKind::Stratified(strata), columns * rows)
         }
-        "halton" => (SamplerKind::Halton, samples(&mut reader)),
-        "sobol" => (SamplerKind::Sobol, samples(&mut reader)),
-        _ => (SamplerKind::ZSobol, samples(&mut reader)),
+        "halton" => (SamplerKind::Halton, samples(&mut reader, &kinds::HALTON_SAMPLES)),
+        "sobol" => (SamplerKind::Sobol, samples(&mut reader, &kinds::PIXEL_SAMPLES)),
+        _ => (SamplerKind::ZSobol, samples(&mut reader, &kinds::PIXEL_SAMPLES)),
     };
     reader.inert(&[
         ("randomization", "points are always Owen-scrambled"),
