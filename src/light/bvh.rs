@@ -164,7 +164,8 @@ impl LightBvh {
     /// The probability with which the way goes on to the node `first`, not to its neighbour; `None` if neither matters.
     #[inline]
     fn share_of_first(&self, first: u32, p: Vec3, n: Vec3) -> Option<f32> {
-        let [a, b] = [0, 1].map(|i| self.nodes[first as usize + i].cluster.importance(p, n));
+        let importance = |i: usize| self.nodes[first as usize + i].cluster.importance(p, n);
+        let (a, b) = (importance(0), importance(1));
         let share = a / (a + b);
         if a > 0.0 && b > 0.0 {
             Some(share.clamp(LEAST_SHARE, 1.0 - LEAST_SHARE))

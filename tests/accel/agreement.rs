@@ -165,9 +165,11 @@ fn backends_answer_what_the_judge_allows() {
     println!("all: {total:?}");
     assert!(total.rays >= rays * worlds.len() && total.judged > 0);
     assert_eq!(total.wrong, 0);
-    // The rays are made to be hard, but not so hard that most prove nothing.
+    // The rays are made to be hard, but not so hard that most prove nothing. Those that the full tier does not judge are not among
+    // the ambiguous: all backends agree about them.
+    let judged = if is_full() { total.rays } else { total.judged };
     assert!(
-        2 * total.ambiguous < total.judged,
+        2 * total.ambiguous < judged,
         "{} rays are ambiguous",
         total.ambiguous
     );

@@ -8,6 +8,11 @@ use crate::{errors, scene};
 fn text(material: &str, parameters: &str) -> String {
     let needed = match material {
         "mix" if !parameters.contains("materials") => "\"string materials\" [\"a\" \"a\"]",
+        "measured" if !parameters.contains("filename") => concat!(
+            "\"string filename\" \"",
+            env!("CARGO_MANIFEST_DIR"),
+            "/scenes/parts/measured-ggx.bsdf\""
+        ),
         _ => "",
     };
     format!(
@@ -32,7 +37,7 @@ fn wrong(parameter: &Parameter) -> Vec<(String, String)> {
             cases.push(case("float", "[1 2]", "takes 1 value"));
             cases.push(case("float", "-1", &format!("must be {range}")));
         }
-        ParameterKind::Choice { .. } => cases.push(case("string", "\"gxg\"", "it must be one of ggx, beckmann")),
+        ParameterKind::Choice { .. } => cases.push(case("string", "\"gxg\"", "is one of ggx, beckmann, not `gxg`")),
         ParameterKind::Reflectance { .. } => {
             cases.push(case("rgb", "[.5 1.5 .5]", "must be between 0 and 1"));
             cases.push(case("rgb", "[.5 .5]", "takes 3 values"));

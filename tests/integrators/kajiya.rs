@@ -6,6 +6,7 @@ use lucerna::integrator::{Integrator, KajiyaIntegrator};
 use lucerna::spectrum::ColorMode;
 
 use crate::common::render::{Built, Judge, parse};
+use crate::common::{effort, full_tier};
 use crate::stage::{LIGHTS, MATERIALS, build, integrator, means, runs};
 
 const ORACLE: KajiyaIntegrator = KajiyaIntegrator {
@@ -58,17 +59,21 @@ fn path_agrees_with_the_oracle_for_each_material_and_light() {
     // A pairwise covering of materials, lights, colour modes and backends: the second index steps by one a row.
     for (m, &(material_name, material)) in MATERIALS.iter().enumerate() {
         for k in 0..2 {
-            let (light_name, light) = LIGHTS[(3 * k + m) % LIGHTS.len()];
+            // The last light is within the ball.
+            let (light_name, light) = LIGHTS[(3 * k + m) % (LIGHTS.len() - 1)];
             let backend = Backend::AVAILABLE[(m + k) % Backend::AVAILABLE.len()];
             let color = [ColorMode::Rgb, ColorMode::Spectral][(m / 2 + k) % 2];
             let name = format!("{material_name} under {light_name}, {backend}, {color:?}");
             let built = build(material, light, backend, color);
-            let path = runs(&built, integrator(&built), 64, 1);
-            let kajiya = runs(&built, Integrator::Kajiya(ORACLE), 256, 101);
+            let effort = effort(16) as u32;
+            let path = runs(&built, integrator(&built), 64 * effort, 1);
+            let kajiya = runs(&built, Integrator::Kajiya(ORACLE), 256 * effort, 101);
             let report = means().against_runs(&path, &kajiya);
             println!("{name}: {report}");
             report.assert_agrees(&name);
-            report.assert_power(&name, f64::INFINITY, 0.02);
+            // Paths from rough glass to a lamp are noisy where no light is sampled.
+            let noticed = if full_tier() { 0.0125 } else { 0.05 };
+            report.assert_power(&name, f64::INFINITY, noticed);
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::common::render::{Built, blocks, parse};
 use crate::common::sidak;
 
 /// Materials of the ball, by name.
-pub const MATERIALS: [(&str, &str); 10] = [
+pub const MATERIALS: [(&str, &str); 14] = [
     ("diffuse", r#""diffuse" "rgb reflectance" [0.7 0.5 0.3]"#),
     (
         "Oren-Nayar",
@@ -32,6 +32,23 @@ pub const MATERIALS: [(&str, &str); 10] = [
     (
         "smooth coat",
         r#""coateddiffuse" "rgb reflectance" [0.6 0.4 0.2] "float roughness" 0"#,
+    ),
+    (
+        "rough coat",
+        r#""coateddiffuse" "rgb reflectance" [0.6 0.4 0.2] "float roughness" 0.3"#,
+    ),
+    (
+        "coated metal",
+        r#""coatedconductor" "float conductor.roughness" 0.2 "float interface.roughness" 0.2"#,
+    ),
+    (
+        "metal of many bounces",
+        r#""conductor" "float roughness" 0.6 "bool multiplescattering" true"#,
+    ),
+    (
+        "principled",
+        r#""principled" "rgb base_color" [0.7 0.5 0.3] "float metallic" 0.3 "float roughness" 0.4 "float clearcoat" 0.8
+           "float spec_trans" 0.2"#,
     ),
 ];
 
