@@ -42,7 +42,7 @@ def scene_with(integrator, directory):
 
 
 def measure(program, directory):
-    """The relative mean squared error of each curve at each count, over three seeds."""
+    """The relative mean squared error of each curve at each count, over five seeds."""
 
     def run(*arguments):
         return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
@@ -58,7 +58,7 @@ def measure(program, directory):
         scene = scene_with(integrator, directory)
         errors = []
         for samples in COUNTS:
-            seeds = range(1, 4)
+            seeds = range(1, 6)
             total = 0.0
             for seed in seeds:
                 render(scene, picture, samples, seed, options)

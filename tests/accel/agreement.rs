@@ -168,11 +168,7 @@ fn backends_answer_what_the_judge_allows() {
     // The rays are made to be hard, but not so hard that most prove nothing. Those that the full tier does not judge are not among
     // the ambiguous: all backends agree about them.
     let judged = if is_full() { total.rays } else { total.judged };
-    assert!(
-        2 * total.ambiguous < judged,
-        "{} rays are ambiguous",
-        total.ambiguous
-    );
+    assert!(2 * total.ambiguous < judged, "{} rays are ambiguous", total.ambiguous);
 }
 
 #[test]

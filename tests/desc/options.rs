@@ -268,3 +268,11 @@ fn samplers_are_read_by_their_names() {
         assert_eq!(of(&format!("\"{}\"", entry.name)).2, 0);
     }
 }
+
+#[test]
+fn a_file_without_options_has_those_of_the_tables() {
+    let plain = scene("WorldBegin");
+    let named = scene("Sampler \"zsobol\" Integrator \"path\"\nWorldBegin");
+    assert_eq!(plain.integrator, named.integrator);
+    assert_eq!(plain.views[0].sampler, named.views[0].sampler);
+}
