@@ -430,3 +430,65 @@ fn info_counts_what_is_in_a_scene() {
     let text = sandbox.lucerna(&["info", "ball.pbrt"]).expect(0).stdout();
     assert!(text.contains("1 spheres") && text.contains("24x16"), "{text}");
 }
+
+#[test]
+fn list_gives_every_parameter() {
+    let sandbox = Sandbox::new();
+    for what in ["materials", "lights", "textures", "samplers", "integrators"] {
+        let text = sandbox.lucerna(&["list", what]).expect(0).stdout();
+        let json: Value =
+            serde_json::from_str(&sandbox.lucerna(&["list", what, "--json"]).expect(0).stdout()).expect("JSON");
+        let entries = json.as_array().expect("an array");
+        assert!(entries.len() >= 2, "{what}");
+        for entry in entries {
+            let [name, directive] = ["name", "directive"].map(|key| entry[key].as_str().expect("a string"));
+            assert!(text.contains(&format!("{directive} \"{name}\"")), "{what} {name}");
+            assert!(!entry["description"].as_str().expect("a string").is_empty());
+            for parameter in entry["parameters"].as_array().expect("an array") {
+                for key in ["name", "type", "range", "description"] {
+                    assert!(
+                        parameter[key].as_str().is_some_and(|text| !text.is_empty()),
+                        "{parameter}"
+                    );
+                }
+                assert!(parameter["default"].is_string(), "{parameter}");
+                let line = format!(
+                    "\"{} {}\"",
+                    parameter["type"].as_str().unwrap_or_default(),
+                    parameter["name"].as_str().unwrap_or_default()
+                );
+                assert!(text.contains(&line), "{line}");
+            }
+        }
+    }
+    let spot = sandbox.lucerna(&["list", "lights", "spot"]).expect(0).stdout();
+    assert!(spot.contains("\"float coneangle\"") && spot.contains("default 30") && !spot.contains("goniometric"));
+    sandbox
+        .lucerna(&["list", "lights", "sopt"])
+        .expect(2)
+        .says("expected one of");
+    sandbox.lucerna(&["list", "cameras"]).expect(2).says("possible values");
+}
+
+#[test]
+fn samplers_and_integrators_are_chosen_by_the_names_listed() {
+    let sandbox = Sandbox::new();
+    for (what, option) in [("samplers", "--sampler"), ("integrators", "--integrator")] {
+        let json: Value =
+            serde_json::from_str(&sandbox.lucerna(&["list", what, "--json"]).expect(0).stdout()).expect("JSON");
+        let mut images = Vec::new();
+        for entry in json.as_array().expect("an array") {
+            let name = entry["name"].as_str().expect("a name");
+            // Twelve samples: no power of two, and strata of four by three.
+            sandbox
+                .lucerna(&["render", "ball.pbrt", "-o", "a.exr", "--spp", "12", "-q", option, name])
+                .expect(0);
+            let (image, _) = read_exr(&sandbox.path("a.exr")).expect("an image");
+            assert!(image.data().iter().all(|v| v.is_finite()), "{name}");
+            images.push(image.data().to_vec());
+        }
+        for (i, image) in images.iter().enumerate() {
+            assert!(images[..i].iter().all(|other| other != image), "{what} {i}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::accel::{Backend, BuildQuality};
 use crate::desc::Strategy;
 use crate::film::PixelRect;
-use crate::sampling::SamplerKind;
+use crate::sampling::{SamplerKind, Strata};
 use crate::spectrum::ColorMode;
 
 /// What `--version` says: the program, and the Embree that it was built with.
@@ -43,6 +43,8 @@ pub enum Command {
     Info(InfoArgs),
     /// Measure how far image A is from the reference B
     Compare(CompareArgs),
+    /// List what scene files may use, with every parameter: type, range, unit, default
+    List(ListArgs),
 }
 
 /// Render scenes to image files.
@@ -177,6 +179,44 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
+/// List what scene files may use, with every parameter.
+///
+/// Of each parameter: name, type, default, allowed values, and what it means, with its unit. A scene reader goes by the same table.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  lucerna list materials
+  lucerna list lights spot
+  lucerna list samplers --json")]
+pub struct ListArgs {
+    /// What to list
+    #[arg(value_name = "WHAT")]
+    pub what: ListKind,
+
+    /// Only the one of this name
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+
+    /// Print one JSON array
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `lucerna list` knows of.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ListKind {
+    /// `Material`
+    Materials,
+    /// `LightSource`, `AreaLightSource`
+    Lights,
+    /// `Texture`
+    Textures,
+    /// `Sampler`
+    Samplers,
+    /// `Integrator`
+    Integrators,
+}
+
 /// Measure how far image A is from the reference B.
 ///
 /// Prints one JSON object: mse, relmse (the mean of (A-B)^2 / (B^2 + 0.01)), mean_a, mean_b, mean_difference ((mean_a - mean_b) /
@@ -222,15 +262,24 @@ impl From<StrategyArg> for Strategy {
 pub enum SamplerArg {
     /// Independent random numbers
     Independent,
+    /// A point in each cell of a grid
+    Stratified,
+    /// Owen-scrambled Halton points
+    Halton,
     /// Owen-scrambled Sobol points
     Sobol,
+    /// The same, with blue noise over the picture
+    Zsobol,
 }
 
 impl From<SamplerArg> for SamplerKind {
     fn from(arg: SamplerArg) -> Self {
         match arg {
             SamplerArg::Independent => Self::Independent,
+            SamplerArg::Stratified => Self::Stratified(Strata::default()),
+            SamplerArg::Halton => Self::Halton,
             SamplerArg::Sobol => Self::Sobol,
+            SamplerArg::Zsobol => Self::ZSobol,
         }
     }
 }

@@ -3,6 +3,7 @@
 pub mod args;
 mod compare;
 mod info;
+mod list;
 mod render;
 mod report;
 mod stats;
@@ -31,6 +32,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, print_error: &dyn Fn(&Error
         Command::Render(args) => return ExitCode::from(render::run(&args, print_error)),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::List(args) => list::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -15,6 +15,7 @@
 
 mod bytes;
 mod integrator;
+mod integrator_kinds;
 mod light;
 mod light_kinds;
 mod material;
@@ -23,6 +24,7 @@ mod parameter;
 pub mod pbrt;
 pub mod ply;
 pub mod rgl;
+mod sampler_kinds;
 mod shape;
 mod texture;
 mod texture_kinds;
@@ -39,6 +41,7 @@ pub use integrator::{
     Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
     Termination,
 };
+pub use integrator_kinds::{INTEGRATORS, IntegratorEntry};
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use light_kinds::{LIGHTS, LightEntry};
 pub use material::{
@@ -48,6 +51,7 @@ pub use material::{
 pub use material_kinds::{MATERIALS, MaterialEntry};
 pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use rgl::{MeasuredDesc, Tensor};
+pub use sampler_kinds::{SAMPLERS, SamplerEntry};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,

@@ -110,6 +110,8 @@ pub enum FloatRange {
     NotNegative,
     /// More than 0.
     Positive,
+    /// The probability of ending a path, from 0.05 to 0.95.
+    Ending,
     /// 1 or more.
     AtLeastOne,
     /// From 0 to 1.
@@ -129,6 +131,7 @@ impl FloatRange {
             Self::Any => true,
             Self::NotNegative => value >= 0.0,
             Self::Positive => value > 0.0,
+            Self::Ending => (0.05..=0.95).contains(&value),
             Self::AtLeastOne => value >= 1.0,
             Self::Unit => (0.0..=1.0).contains(&value),
             Self::Asymmetry => value.abs() < 1.0,
@@ -143,6 +146,7 @@ impl FloatRange {
             Self::Any => "finite",
             Self::NotNegative => "0 or more",
             Self::Positive => "positive",
+            Self::Ending => "between 0.05 and 0.95",
             Self::AtLeastOne => "1 or more",
             Self::Unit => "between 0 and 1",
             Self::Asymmetry => "more than -1 and less than 1",
@@ -175,6 +179,7 @@ impl ParameterKind {
     pub fn range_text(&self) -> String {
         match self {
             Self::Bool(_) => "true, false".to_owned(),
+            Self::Integer { range, .. } if range.1 == i32::MAX => format!("{} or more", range.0),
             Self::Integer { range, .. } => format!("{} to {}", range.0, range.1),
             Self::Float { range, .. } | Self::FloatTexturedIn { range, .. } => range.text().to_owned(),
             Self::Reflectance { .. } => FloatRange::Unit.text().to_owned(),

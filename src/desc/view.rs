@@ -243,6 +243,6 @@ pub enum FilterKind {
 pub struct SamplerDesc {
     /// The sequence.
     pub kind: SamplerKind,
-    /// Samples a pixel, positive. Default 16, for `independent` 4.
+    /// Samples a pixel, positive; of strata as many as those. Default 16, for `independent` 4.
     pub pixel_samples: u32,
 }

@@ -14,6 +14,24 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// A bijection of the 32-bit integers in which every input bit affects every output bit (two rounds of multiplication and shift
+/// with the constants that Wellons's search of 2018 found, "lowbias32"). It maps 0 to 0.
+#[inline(always)]
+pub const fn mix32(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7feb_352d);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+/// The number at place `counter` of the SplitMix64 generator (Steele, Lea and Flood 2014) whose state is the key. Keys are
+/// hashes, so that no two of these sequences come near each other.
+#[inline(always)]
+pub(super) const fn split_mix(key: u64, counter: u64) -> u64 {
+    mix64(key.wrapping_add(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
+}
+
 /// Hashes `value` into the hash `key`: chains of it tell sequences of values apart.
 #[inline]
 pub const fn combine(key: u64, value: u64) -> u64 {

@@ -2,14 +2,18 @@
 
 mod cells;
 pub mod distribution;
+mod halton;
 pub mod hash;
 mod measure;
 pub mod mis;
+mod permutation;
 mod sampler;
 mod sobol;
 mod sphere_map;
+mod stratified;
 pub mod warp;
 mod windowed;
+mod zsobol;
 
 pub use cells::{Cell, CellDistribution};
 pub use distribution::{AliasTable, PiecewiseConstant1D};
@@ -17,6 +21,7 @@ pub use measure::{AreaPdf, SolidAnglePdf};
 pub use mis::{balance_heuristic, power_heuristic};
 pub use sampler::{SampleStream, Sampler, SamplerKind};
 pub use sphere_map::SphereMap;
+pub use stratified::Strata;
 pub use windowed::WindowedDistribution;
 
 /// The largest number below one.

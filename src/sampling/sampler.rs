@@ -1,16 +1,29 @@
 //! The numbers that a pixel sample consumes, each a pure function of (seed, pixel, sample, branch, dimension).
+//!
+//! The dimensions come in groups of four; what a group serves is fixed by its number (see [`crate::integrator`] for the table),
+//! whatever the sampler.
 
-use super::hash::{GOLDEN, combine, mix64, unit_f32};
-use super::sobol::{dimension_1_reversed, dimensions_2_3_reversed, scramble_reversed};
+use super::hash::{GOLDEN, combine, mix64, split_mix, unit_f32};
+use super::sobol::{scramble_reversed, scrambled_point};
+use super::stratified::Strata;
+use super::zsobol::Order;
+use super::{halton, stratified, zsobol};
 use crate::math::{Kernel, Vectorizer};
 
-/// How the samples of a pixel relate to one another.
+/// How the samples of a pixel relate to one another. All estimate the same, but for strata without jitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Not at all: independent uniform numbers.
     Independent,
+    /// One point in each cell of a grid over each pair of numbers, and in each slice of either, the slices as many as samples.
+    /// Even over all samples of a pixel only, not over the first of them.
+    Stratified(Strata),
+    /// Owen-scrambled Halton points: a prime base for each dimension, so that few samples are even in the first groups only.
+    Halton,
     /// Owen-scrambled Sobol points: over the samples of a pixel each group of numbers fills its domain evenly.
     Sobol,
+    /// As [`SamplerKind::Sobol`], and so that neighbouring pixels together are even too: what noise remains is of high frequency.
+    ZSobol,
 }
 
 /// The source of all random numbers of a render. It has no state: the same arguments always give the same numbers, in any
@@ -23,8 +36,13 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// A sampler for `samples_per_pixel` samples in each pixel. Sobol points are at their best for powers of two.
+    /// A sampler for `samples_per_pixel` (at least 1) samples in each pixel. Sobol points are at their best for powers of two.
+    /// Strata that are not as many as the samples are replaced by those that are, and nearest to squares.
     pub fn new(kind: SamplerKind, seed: u64, samples_per_pixel: u32) -> Self {
+        let kind = match kind {
+            SamplerKind::Stratified(strata) => SamplerKind::Stratified(strata.for_samples(samples_per_pixel)),
+            _ => kind,
+        };
         Self {
             kind,
             seed,
@@ -53,11 +71,21 @@ impl Sampler {
     #[inline]
     pub fn start(&self, x: i32, y: i32, sample_index: u32) -> SampleStream {
         debug_assert!(sample_index < self.samples_per_pixel);
+        let (plan, [x, y]) = match self.kind {
+            SamplerKind::Independent => (Plan::Independent, [x, y]),
+            SamplerKind::Stratified(strata) => (Plan::Stratified(strata), [x, y]),
+            SamplerKind::Halton => (Plan::Halton(self.samples_per_pixel), [x, y]),
+            SamplerKind::Sobol => (Plan::Sobol, [x, y]),
+            SamplerKind::ZSobol => {
+                let (order, tile) = Order::new(self.samples_per_pixel, x, y);
+                (Plan::ZSobol(order), tile)
+            }
+        };
         let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
         SampleStream {
             key: combine(mix64(self.seed ^ GOLDEN), pixel),
             reversed_index: sample_index.reverse_bits(),
-            kind: self.kind,
+            plan,
         }
     }
 }
@@ -66,27 +94,40 @@ impl Sampler {
 /// and the time; a direction and a lobe); its caller numbers the groups so that no two decisions share one.
 ///
 /// Drawing changes nothing: the same group gives the same numbers again, and [`Self::draw1`] and [`Self::draw2`] give the
-/// first of the group's four. Of a Sobol group the first two dimensions are the most even pair (any power-of-two prefix of
-/// the samples has one point in each elementary interval of its size), each dimension on its own is perfectly stratified,
-/// and different groups, pixels and branches are randomised independently.
+/// first of the group's four. The first two dimensions are the most even pair, each dimension on its own is stratified, and
+/// different groups and branches are randomised independently; so are different pixels, but for [`SamplerKind::ZSobol`], and
+/// groups of [`SamplerKind::Halton`] share an index: they are independent over seeds and pixels, not over a pixel's samples.
+///
+/// - Sobol and Z-Sobol: of the first pair any power-of-two prefix of the samples has one point in each elementary interval of
+///   its size; the whole group is a net with t = 3.
+/// - Stratified: both pairs of a group are multi-jittered, over all samples of the pixel.
+/// - Halton: the bases of group g are the prime numbers 4 g to 4 g + 3 (counted from 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleStream {
-    /// A hash of seed, pixel and branches.
+    /// A hash of seed, pixel (or tile of pixels) and branches.
     key: u64,
     reversed_index: u32,
-    kind: SamplerKind,
+    plan: Plan,
 }
 
-const _: () = assert!(size_of::<SampleStream>() <= 16);
+const _: () = assert!(size_of::<SampleStream>() <= 24);
+
+/// What a sampler of each kind has to know to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Plan {
+    Independent,
+    Stratified(Strata),
+    /// For so many samples.
+    Halton(u32),
+    Sobol,
+    ZSobol(Order),
+}
 
 impl SampleStream {
     /// The four numbers of `group`, in [0, 1).
     #[inline]
     pub fn draw4(&self, group: u32) -> [f32; 4] {
-        match self.kind {
-            SamplerKind::Independent => independent(self.key, self.reversed_index, group),
-            SamplerKind::Sobol => sobol(self.key, self.reversed_index, group),
-        }
+        draw(&[*self], group).map(|[number]| number)
     }
 
     /// The first number of `group`, in [0, 1).
@@ -132,23 +173,41 @@ impl<const N: usize> Kernel for DrawLanes<'_, N> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let (keys, indices) = (self.streams.map(|s| s.key), self.streams.map(|s| s.reversed_index));
-        let mut numbers = [[0.0; N]; 4];
-        let [x, y, z, w] = &mut numbers;
-        match self.streams[0].kind {
-            SamplerKind::Independent => {
-                for i in 0..N {
-                    [x[i], y[i], z[i], w[i]] = independent(keys[i], indices[i], self.group);
-                }
-            }
-            SamplerKind::Sobol => {
-                for i in 0..N {
-                    [x[i], y[i], z[i], w[i]] = sobol(keys[i], indices[i], self.group);
-                }
-            }
-        }
-        numbers
+        draw(self.streams, self.group)
     }
+}
+
+/// The four numbers of `group` of each stream; all are of one sampler.
+#[inline(always)]
+fn draw<const N: usize>(streams: &[SampleStream; N], group: u32) -> [[f32; N]; 4] {
+    let (keys, reversed_indices) = (streams.map(|s| s.key), streams.map(|s| s.reversed_index));
+    match streams[0].plan {
+        Plan::Independent => each_lane(keys, reversed_indices, |key, index| independent(key, index, group)),
+        Plan::Sobol => each_lane(keys, reversed_indices, |key, index| sobol(key, index, group)),
+        Plan::Stratified(strata) => stratified::draw(keys, reversed_indices.map(u32::reverse_bits), strata, group),
+        Plan::Halton(samples) => halton::draw(keys, reversed_indices.map(u32::reverse_bits), samples, group),
+        Plan::ZSobol(first) => {
+            let orders = streams.map(|stream| match stream.plan {
+                Plan::ZSobol(order) => order,
+                _ => first,
+            });
+            zsobol::draw(keys, reversed_indices, orders, group)
+        }
+    }
+}
+
+#[inline(always)]
+fn each_lane<const N: usize>(
+    keys: [u64; N],
+    reversed_indices: [u32; N],
+    numbers_of: impl Fn(u64, u32) -> [f32; 4],
+) -> [[f32; N]; 4] {
+    let mut numbers = [[0.0; N]; 4];
+    let [x, y, z, w] = &mut numbers;
+    for i in 0..N {
+        [x[i], y[i], z[i], w[i]] = numbers_of(keys[i], reversed_indices[i]);
+    }
+    numbers
 }
 
 /// Four uniform numbers for (key, index, group).
@@ -164,36 +223,34 @@ fn independent(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
 #[inline(always)]
 fn sobol(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
     let hash = split_mix(key, u64::from(group));
-    let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
     let index = scramble_reversed(reversed_index, hash as u32).reverse_bits();
-    let (second, third) = dimensions_2_3_reversed(index);
-    [
-        scrambled_unit(index, a as u32),
-        scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
-        scrambled_unit(second, b as u32),
-        scrambled_unit(third, (b >> 32) as u32),
-    ]
-}
-
-/// The number at place `counter` of the SplitMix64 generator (Steele, Lea and Flood 2014) whose state is the key. Keys are
-/// hashes, so that no two of these sequences come near each other.
-#[inline(always)]
-fn split_mix(key: u64, counter: u64) -> u64 {
-    mix64(key.wrapping_add(counter.wrapping_add(1).wrapping_mul(GOLDEN)))
-}
-
-#[inline(always)]
-fn scrambled_unit(reversed: u32, seed: u32) -> f32 {
-    unit_f32(scramble_reversed(reversed, seed).reverse_bits())
+    scrambled_point(index, hash)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const KINDS: [SamplerKind; 6] = [
+        SamplerKind::Independent,
+        SamplerKind::Stratified(Strata {
+            columns: 4,
+            rows: 4,
+            jitter: true,
+        }),
+        SamplerKind::Stratified(Strata {
+            columns: 5,
+            rows: 3,
+            jitter: false,
+        }),
+        SamplerKind::Halton,
+        SamplerKind::Sobol,
+        SamplerKind::ZSobol,
+    ];
+
     #[test]
     fn draws_are_prefixes_of_one_group_and_branches_differ() {
-        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+        for kind in KINDS {
             let stream = Sampler::new(kind, 7, 16).start(-3, 5, 11);
             let four = stream.draw4(9);
             assert_eq!(stream.draw2(9), [four[0], four[1]]);
@@ -217,13 +274,15 @@ mod tests {
 
     #[test]
     fn lanes_get_the_numbers_of_their_streams() {
-        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+        for kind in KINDS {
             let sampler = Sampler::new(kind, 3, 64);
             let streams: [_; 8] =
                 std::array::from_fn(|i| sampler.start(i as i32 - 3, 7, 5 * i as u32).branch(i as u32 % 3));
-            let lanes = SampleStream::draw4_lanes(Vectorizer::default(), &streams, 11);
-            for (i, stream) in streams.iter().enumerate() {
-                assert_eq!(lanes.map(|numbers| numbers[i]), stream.draw4(11), "{kind:?}");
+            for group in [0, 11, 300] {
+                let lanes = SampleStream::draw4_lanes(Vectorizer::default(), &streams, group);
+                for (i, stream) in streams.iter().enumerate() {
+                    assert_eq!(lanes.map(|numbers| numbers[i]), stream.draw4(group), "{kind:?}");
+                }
             }
         }
     }
@@ -240,5 +299,16 @@ mod tests {
             [2_026_895, 8_073_496, 12_369_065, 14_045_273]
         );
         assert_eq!(bits(SamplerKind::Sobol), [3_760_583, 9_305_995, 767_873, 3_742_433]);
+        let newer = [
+            SamplerKind::Stratified(Strata::default()),
+            SamplerKind::Halton,
+            SamplerKind::ZSobol,
+        ];
+        let expected = [
+            [3_815_203, 666_366, 3_457_363, 11_679_164],
+            [9_950_562, 11_596_498, 6_410_702, 5_002_444],
+            [15_338_946, 6_293_353, 11_704_387, 2_795_484],
+        ];
+        assert_eq!(newer.map(bits), expected);
     }
 }

@@ -7,6 +7,8 @@
 //! Everything here works on *reversed* integers: bit 0 is the most significant binary digit of the point. In that order a
 //! multiplication carries from coarse digits to fine ones, which is what nested scrambling needs.
 
+use super::hash::{GOLDEN, mix64, unit_f32};
+
 /// Scrambles a reversed integer: whether a bit is flipped depends on the seed and on the bits below it only, so that it is
 /// a random nested permutation of the digits.
 #[inline(always)]
@@ -38,6 +40,24 @@ pub fn dimensions_2_3_reversed(index: u32) -> (u32, u32) {
         both ^= row[(index >> (4 * digit) & 15) as usize];
     }
     (both as u32, (both >> 32) as u32)
+}
+
+/// The first four dimensions of point `index`, each Owen-scrambled by its own part of `hash`, in [0, 1).
+#[inline(always)]
+pub(super) fn scrambled_point(index: u32, hash: u64) -> [f32; 4] {
+    let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
+    let (second, third) = dimensions_2_3_reversed(index);
+    [
+        scrambled_unit(index, a as u32),
+        scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
+        scrambled_unit(second, b as u32),
+        scrambled_unit(third, (b >> 32) as u32),
+    ]
+}
+
+#[inline(always)]
+fn scrambled_unit(reversed: u32, seed: u32) -> f32 {
+    unit_f32(scramble_reversed(reversed, seed).reverse_bits())
 }
 
 /// For each hexadecimal digit of an index and each of its values: its share of dimension 2 (low half) and 3 (high half).

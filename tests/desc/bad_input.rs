@@ -103,7 +103,7 @@ fn syntax() {
 
 #[test]
 fn values() {
-    let cases: [Case; 25] = [
+    let cases: [Case; 28] = [
         (
             "WorldBegin Shape \"sphere\" \"float radius\" @\"big\"",
             "expected a finite number, found `\"big\"`",
@@ -202,18 +202,33 @@ fn values() {
         ),
         (
             "Sampler \"sobol\" \"integer pixelsamples\" @0 WorldBegin",
-            "must be between 1",
+            "must be 1 to 16777216",
             "",
         ),
         (
             "Integrator \"path\" \"integer maxdepth\" @-2 WorldBegin",
-            "-1 for no limit",
+            "must be -1 or more",
             "",
         ),
         (
             "Integrator \"path\" \"string lightsampler\" @\"pwoer\" WorldBegin",
-            "unknown light sampler",
+            "`lightsampler` is one of",
             "`power`",
+        ),
+        (
+            "Sampler \"stratified\" \"integer xsamples\" @0 WorldBegin",
+            "must be 1 to 4096",
+            "",
+        ),
+        (
+            "Sampler \"sobol\" @\"bool jitter\" false WorldBegin",
+            "no parameter `jitter`",
+            "",
+        ),
+        (
+            "Integrator \"kajiya\" \"float alpha\" @1 WorldBegin",
+            "must be between 0.05 and 0.95",
+            "",
         ),
         ("@TransformTimes 1 1 WorldBegin", "must come before", ""),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),

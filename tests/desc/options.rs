@@ -5,8 +5,9 @@ use std::path::Path;
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
     CameraKind, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc,
-    LightSamplerKind, MotionDesc, PathDesc, PixelRect, SamplerKind, Strategy, Termination,
+    LightSamplerKind, MotionDesc, PathDesc, PixelRect, SAMPLERS, SamplerKind, Strategy, Termination,
 };
+use lucerna::sampling::Strata;
 
 use crate::scene;
 
@@ -31,7 +32,7 @@ fn defaults_are_those_of_pbrt() {
     assert_eq!(view.film.imaging_ratio(), 1.0);
     assert_eq!(view.filter.kind, FilterKind::Gaussian { sigma: 0.5 });
     assert_eq!(view.filter.radius, [1.5, 1.5]);
-    assert_eq!(view.sampler.kind, SamplerKind::Sobol);
+    assert_eq!(view.sampler.kind, SamplerKind::ZSobol);
     assert_eq!(view.sampler.pixel_samples, 16);
     let path = IntegratorDesc {
         max_depth: Some(5),
@@ -242,7 +243,36 @@ fn what_cannot_change_the_image_is_a_warning() {
         "#,
     );
     let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
-    assert_eq!(lines, [2, 3, 3, 4, 4, 4, 5, 6, 8, 10]);
+    assert_eq!(lines, [2, 3, 3, 4, 4, 5, 6, 8, 10]);
     assert!(scene.warnings[0].message.contains("--backend"));
-    assert_eq!(scene.views[0].sampler.kind, SamplerKind::Sobol);
+    assert_eq!(scene.views[0].sampler.kind, SamplerKind::Halton);
+}
+
+#[test]
+fn samplers_are_read_by_their_names() {
+    let of = |text: &str| {
+        let scene = scene(&format!("Sampler {text}\nWorldBegin"));
+        let sampler = scene.views[0].sampler;
+        (sampler.kind, sampler.pixel_samples, scene.warnings.len())
+    };
+    let stratified = |columns, rows, jitter| SamplerKind::Stratified(Strata { columns, rows, jitter });
+    assert_eq!(of(r#""stratified""#), (stratified(4, 4, true), 16, 0));
+    let given = of(r#""stratified" "integer xsamples" 3 "integer ysamples" 5 "bool jitter" false"#);
+    assert_eq!(given, (stratified(3, 5, false), 15, 0));
+    assert_eq!(of(r#""halton" "integer pixelsamples" 9"#), (SamplerKind::Halton, 9, 0));
+    assert_eq!(of(r#""zsobol""#), (SamplerKind::ZSobol, 16, 0));
+    assert_eq!(of(r#""sobol""#), (SamplerKind::Sobol, 16, 0));
+    assert_eq!(of(r#""paddedsobol""#), (SamplerKind::Sobol, 16, 0));
+    assert_eq!(of(r#""pmj02bn""#), (SamplerKind::ZSobol, 16, 1));
+    for entry in &SAMPLERS {
+        assert_eq!(of(&format!("\"{}\"", entry.name)).2, 0);
+    }
+}
+
+#[test]
+fn a_file_without_options_has_those_of_the_tables() {
+    let plain = scene("WorldBegin");
+    let named = scene("Sampler \"zsobol\" Integrator \"path\"\nWorldBegin");
+    assert_eq!(plain.integrator, named.integrator);
+    assert_eq!(plain.views[0].sampler, named.views[0].sampler);
 }

@@ -1,10 +1,10 @@
-//! `Film`, `PixelFilter` and `Sampler`.
+//! `Film` and `PixelFilter`.
 
 use std::path::PathBuf;
 
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::{CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, SamplerKind};
+use crate::desc::{CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect};
 use crate::error::Span;
 
 /// The film of a file without one.
@@ -153,57 +153,4 @@ pub(super) fn read_filter(mut reader: ParamReader<'_>, kind: &str) -> FilterDesc
     let radius = [side("xradius"), side("yradius")];
     reader.finish();
     FilterDesc { kind, radius }
-}
-
-/// The sampler of a file without one.
-pub(super) const DEFAULT_SAMPLER: SamplerDesc = SamplerDesc {
-    kind: SamplerKind::Sobol,
-    pixel_samples: 16,
-};
-
-/// Reads a sampler. Those that pbrt has and Lucerna has not are replaced: what they converge to is the same.
-pub(super) fn read_sampler(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
-    const KNOWN: [&str; 7] = [
-        "independent",
-        "sobol",
-        "zsobol",
-        "paddedsobol",
-        "halton",
-        "stratified",
-        "pmj02bn",
-    ];
-    let span = reader.span;
-    let mut samples = |name, default| {
-        let valid = |v: i32| (1..=1 << 24).contains(&v);
-        reader
-            .integer_in(name, default, valid, "between 1 and 16777216")
-            .unsigned_abs()
-    };
-    let (sampler, pixel_samples) = match kind {
-        "independent" => (SamplerKind::Independent, samples("pixelsamples", 4)),
-        "stratified" => {
-            let product = samples("xsamples", 4).saturating_mul(samples("ysamples", 4));
-            (SamplerKind::Sobol, product)
-        }
-        _ => (SamplerKind::Sobol, samples("pixelsamples", 16)),
-    };
-    match kind {
-        "independent" | "sobol" | "zsobol" | "paddedsobol" => {}
-        "halton" | "stratified" | "pmj02bn" => {
-            let message =
-                format!("the sampler `{kind}` is not there: `sobol` is used, which converges to the same image");
-            reader.report().warning(span, message);
-        }
-        _ => unknown_type(reader.report(), "sampler", kind, span, (&KNOWN, &[]), "`sobol` is used"),
-    }
-    reader.inert(&[
-        ("randomization", "points are always Owen-scrambled"),
-        ("seed", "give the seed on the command line, by --seed"),
-        ("jitter", "points are always Owen-scrambled"),
-    ]);
-    reader.finish();
-    SamplerDesc {
-        kind: sampler,
-        pixel_samples,
-    }
 }

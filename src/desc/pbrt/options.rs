@@ -7,6 +7,7 @@ use super::integrator;
 use super::params::Param;
 use super::reader::ParamReader;
 use super::report::Report;
+use super::sampler;
 use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MotionDesc, SamplerDesc, ViewDesc};
 use crate::error::Span;
 
@@ -94,7 +95,7 @@ impl Options {
             }
             OptionKind::Film => self.film.replace(film::read_film(reader, name)).is_some(),
             OptionKind::PixelFilter => self.filter.replace(film::read_filter(reader, name)).is_some(),
-            OptionKind::Sampler => self.sampler.replace(film::read_sampler(reader, name)).is_some(),
+            OptionKind::Sampler => self.sampler.replace(sampler::read(reader, name)).is_some(),
             OptionKind::Integrator => self.integrator.replace(integrator::read(reader, name)).is_some(),
         };
         if replaced {
@@ -136,7 +137,7 @@ impl Options {
                     ..film
                 },
                 filter: self.filter.unwrap_or(film::DEFAULT_FILTER),
-                sampler: self.sampler.unwrap_or(film::DEFAULT_SAMPLER),
+                sampler: self.sampler.unwrap_or(sampler::DEFAULT),
                 span: camera.span,
             });
         }

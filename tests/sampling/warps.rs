@@ -1,14 +1,11 @@
-//! Samplers, warps and distributions against what they promise.
-
-mod common;
+//! Warps and distributions against what they promise.
 
 use std::f64::consts::PI;
 
-use common::chi2::Chi2;
-use common::means::Means;
-use common::random::Random;
+use super::common::chi2::Chi2;
+use super::common::random::Random;
 use glam::{Vec2, Vec3};
-use lucerna::sampling::{PiecewiseConstant1D, Sampler, SamplerKind, SolidAnglePdf, warp};
+use lucerna::sampling::{PiecewiseConstant1D, SolidAnglePdf, warp};
 
 /// How many chi-squared tests of warps there are here.
 const WARPS: usize = 13;
@@ -157,183 +154,10 @@ fn warps_invert() {
     }
 }
 
-const KINDS: [SamplerKind; 2] = [SamplerKind::Independent, SamplerKind::Sobol];
-
-/// Pairs of numbers that must be independent of each other, by what differs between them. Each gets `i` and gives one pair
-/// of a sample `i` of a family.
-type Pair = (&'static str, fn(Sampler, u32) -> [f32; 2]);
-
-const PAIRS: [Pair; 8] = [
-    ("two dimensions", |s, i| {
-        s.start(i as i32 % 640, i as i32 / 640, 0).draw2(0)
-    }),
-    ("the last two dimensions", |s, i| {
-        let [_, _, a, b] = s.start(i as i32 % 640, i as i32 / 640, 5).draw4(3);
-        [a, b]
-    }),
-    ("neighbours in x", |s, i| {
-        let x = 2 * (i % 640) as i32;
-        [x, x + 1].map(|x| s.start(x, i as i32 / 640, 3).draw1(1))
-    }),
-    ("neighbours in y", |s, i| {
-        let y = 2 * (i / 640) as i32;
-        [y, y + 1].map(|y| s.start(i as i32 % 640 - 320, y - 320, 3).draw4(1)[2])
-    }),
-    ("two groups", |s, i| {
-        let stream = s.start(i as i32 % 640, i as i32 / 640, 2);
-        [stream.draw1(6), stream.draw1(7)]
-    }),
-    ("stream and branch", |s, i| {
-        let stream = s.start(i as i32 % 640, i as i32 / 640, 2);
-        [stream.draw1(6), stream.branch(0).draw1(6)]
-    }),
-    ("two branches", |s, i| {
-        let stream = s.start(i as i32 % 640, i as i32 / 640, 2);
-        [stream.branch(4).draw1(0), stream.branch(5).draw1(0)]
-    }),
-    ("two seeds", |s, i| {
-        let other = Sampler::new(s.kind(), s.seed() + 1, s.samples_per_pixel());
-        [s, other].map(|s| s.start(i as i32 % 640, i as i32 / 640, 1).draw1(0))
-    }),
-];
-
-#[test]
-fn what_should_be_independent_is_uniform_over_the_square() {
-    for kind in KINDS {
-        for (name, pair) in PAIRS {
-            let mut next = 0;
-            let report = Chi2::new([[0.0, 1.0]; 2]).of(2 * PAIRS.len()).run(
-                |_| {
-                    next += 1;
-                    let pair = pair(Sampler::new(kind, 42, 64), next - 1);
-                    assert!(pair.iter().all(|u| (0.0..1.0).contains(u)));
-                    Some(pair.map(f64::from))
-                },
-                |_| 1.0,
-            );
-            report.assert_ok(&format!("{kind:?}, {name}"));
-        }
-    }
-}
-
-#[test]
-fn independent_samples_of_one_pixel_are_uniform() {
-    let sampler = Sampler::new(SamplerKind::Independent, 0, u32::MAX);
-    let mut next = 0;
-    let consecutive = |_| {
-        next += 2;
-        Some([next - 2, next - 1].map(|i| f64::from(sampler.start(7, 9, i).draw1(0))))
-    };
-    Chi2::new([[0.0, 1.0]; 2])
-        .run(consecutive, |_| 1.0)
-        .assert_ok("consecutive samples");
-}
-
-/// The points of a Sobol group of one pixel, as integers of 24 bits.
-fn sobol_points(pixel: i32, group: u32, indices: std::ops::Range<u32>) -> Vec<[u32; 4]> {
-    let sampler = Sampler::new(SamplerKind::Sobol, 11, 1 << 20);
-    indices
-        .map(|i| {
-            sampler
-                .start(pixel, 1, i)
-                .draw4(group)
-                .map(|u| (u * 16_777_216.0) as u32)
-        })
-        .collect()
-}
-
-/// Whether each elementary interval with `splits[d]` binary digits in dimension d holds the same number of the points.
-fn is_even(points: &[[u32; 4]], splits: [u32; 4]) -> bool {
-    let cells = 1 << splits.iter().sum::<u32>();
-    let mut counts = vec![0_usize; cells];
-    for point in points {
-        let cell = (0..4).fold(0, |cell, d| cell << splits[d] | point[d] >> (24 - splits[d]));
-        counts[cell as usize] += 1;
-    }
-    counts.iter().all(|&c| c == points.len() / cells)
-}
-
-#[test]
-fn sobol_prefixes_fill_each_elementary_interval_once() {
-    for k in 0..=10 {
-        for (pixel, group) in [(0, 0), (5, 1), (-8, 17)] {
-            let n = 1 << k;
-            // The first 2^k samples, and the next 2^k.
-            for points in [sobol_points(pixel, group, 0..n), sobol_points(pixel, group, n..2 * n)] {
-                for a in 0..=k {
-                    assert!(
-                        is_even(&points, [a, k - a, 0, 0]),
-                        "first pair, 2^{k} points, {a} digits"
-                    );
-                }
-                for d in 2..4 {
-                    let mut splits = [0; 4];
-                    splits[d] = k;
-                    assert!(is_even(&points, splits), "dimension {d}, 2^{k} points");
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn sobol_groups_are_nets_in_four_dimensions() {
-    // The degrees of the four polynomials, less one, sum to t = 3 (Sobol 1967): every elementary interval of volume 2^(3-m)
-    // holds 8 of 2^m points.
-    let m = 9;
-    let points = sobol_points(3, 2, 0..1 << m);
-    for a in 0..=m - 3 {
-        for b in 0..=m - 3 - a {
-            for c in 0..=m - 3 - a - b {
-                let splits = [a, b, c, m - 3 - a - b - c];
-                assert!(is_even(&points, splits), "{splits:?}");
-            }
-        }
-    }
-}
-
-/// The estimates of the integral of a smooth function over the unit square in each of `runs` pixels.
-fn estimates(kind: SamplerKind, samples: u32, runs: i32) -> Vec<f64> {
-    let sampler = Sampler::new(kind, 5, samples);
-    let f = |[x, y]: [f32; 2]| (f64::from(x) * PI).sin() * (-f64::from(y)).exp();
-    (0..runs)
-        .map(|run| (0..samples).map(|i| f(sampler.start(run, 0, i).draw2(4))).sum::<f64>() / f64::from(samples))
-        .collect()
-}
-
-#[test]
-fn sobol_is_unbiased_and_converges_faster() {
-    let exact = 2.0 / PI * (1.0 - (-1.0_f64).exp());
-    let error = |values: &[f64]| {
-        let squares: f64 = values.iter().map(|v| (v - exact).powi(2)).sum();
-        (squares / values.len() as f64).sqrt()
-    };
-    let mut errors = Vec::new();
-    for kind in KINDS {
-        for samples in [64, 1024] {
-            let values = estimates(kind, samples, 256);
-            let runs: Vec<Vec<f64>> = values.iter().map(|&v| vec![v]).collect();
-            Means::default()
-                .against_exact(&runs, &[exact])
-                .assert_agrees(&format!("{kind:?} {samples}"));
-            errors.push(error(&values));
-        }
-    }
-    // Sixteen times the samples: the error falls by 4 for independent ones, by about 64 for scrambled nets and smooth
-    // functions (Owen 1997). 256 estimates know each error to 5 %.
-    let [independent_64, independent_1024, sobol_64, sobol_1024] = errors[..] else {
-        unreachable!("four errors")
-    };
-    let ratio = independent_64 / independent_1024;
-    assert!((3.2..5.0).contains(&ratio), "independent: {ratio}");
-    assert!(sobol_64 / sobol_1024 > 40.0, "sobol: {sobol_64} to {sobol_1024}");
-    assert!(sobol_1024 < independent_1024 / 50.0);
-}
-
 #[test]
 fn a_density_over_area_seen_from_a_point_integrates_to_one() {
     // A unit square at height 0.5 over the point: directions uniform over the sphere, p_w where they hit it.
-    let report = common::means::Estimate::of((0..64).map(|seed| {
+    let report = super::common::means::Estimate::of((0..64).map(|seed| {
         let mut random = Random::new(seed);
         let n = 10_000;
         let hits = (0..n).map(|_| {

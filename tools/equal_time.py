@@ -1,0 +1,90 @@
+"""Measures relMSE at equal processor time: ways of choosing lights, samplers, colour modes. Prints the tables of docs/measurements.md.
+
+    python3 tools/equal_time.py target/release/lucerna
+
+Each configuration is rendered with the same number of samples on one thread, by five seeds; its error is scaled to the time of
+the first one (error times time is what a Monte Carlo estimator keeps). Time is the median of three runs' processor time, less
+that of a run with a single sample.
+"""
+
+import json
+import pathlib
+import re
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SCENES = ROOT / "scenes"
+SEEDS = range(1, 6)
+
+
+class Bench:
+    """Runs the program on one scene at one resolution."""
+
+    def __init__(self, program, scene, resolution, directory):
+        self.program, self.scene, self.resolution, self.directory = program, scene, resolution, pathlib.Path(directory)
+
+    def run(self, *arguments):
+        """Standard output and the processor time that it took."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = subprocess.run([self.program, *map(str, arguments)], check=True, capture_output=True, text=True)
+        return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+    def render(self, output, samples, seed, options, scene=None):
+        arguments = ["render", scene or self.scene, "-o", output, "--resolution", self.resolution, "--spp", samples]
+        return self.run(*arguments, "--seed", seed, "--threads", 1, "--quiet", *options)[1]
+
+    def table(self, title, samples, reference_samples, cases):
+        """`cases`: name, options, scene or None, whether it has a reference of its own (or the first one's)."""
+        print(f"\n{title}\n\n| | samples in that time | relMSE at equal time | relative |\n|---|---|---|---|")
+        reference = self.directory / "reference.exr"
+        picture = self.directory / "picture.exr"
+        base_time = base_error = None
+        for i, (name, options, scene, own_reference) in enumerate(cases):
+            if i == 0 or own_reference:
+                others = options[: options.index("--sampler")]
+                self.render(reference, reference_samples, 999, [*others, "--sampler", "sobol"], scene)
+            start = self.render(picture, 1, 0, options, scene)
+            times = [self.render(picture, samples, 0, options, scene) - start for _ in range(3)]
+            time = statistics.median(times)
+            base_time = base_time or time
+            errors = []
+            for seed in SEEDS:
+                self.render(picture, samples, seed, options, scene)
+                errors.append(json.loads(self.run("compare", picture, reference)[0])["relmse"])
+            error = statistics.mean(errors) * time / base_time
+            base_error = base_error or error
+            print(f"| {name} | {samples * base_time / time:.1f} | {error:.3g} | {error / base_error:.2f} |", flush=True)
+
+
+def with_light_sampler(name, directory):
+    """The scene of many lights, choosing them by `name`; next to the original, whose parts it includes."""
+    text = (SCENES / "many-lights.pbrt").read_text()
+    text, count = re.subn(r'"string lightsampler" "bvh"', f'"string lightsampler" "{name}"', text)
+    assert count == 1
+    text = text.replace('"parts/', f'"{SCENES}/parts/')
+    path = pathlib.Path(directory) / f"many-lights-{name}.pbrt"
+    path.write_text(text)
+    return path
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory() as directory:
+        lights = Bench(program, None, "96x54", directory)
+        names = ["bvh", "power", "uniform"]
+        cases = [(name, ["--sampler", "sobol"], with_light_sampler(name, directory), False) for name in names]
+        lights.table("Choice of lights, `many-lights`, 96 x 54 pixels", 16, 1024, cases)
+        box = Bench(program, SCENES / "cornell-box.pbrt", "64x64", directory)
+        samplers = [(name, ["--sampler", name], None, False) for name in ["sobol", "zsobol", "halton", "stratified", "independent"]]
+        box.table("Samplers, `cornell-box`, 64 x 64 pixels", 64, 2048, samplers)
+        modes = [(name, ["--color", name, "--sampler", "sobol"], None, True) for name in ["spectral", "rgb"]]
+        box.table("Colour modes, `cornell-box`, 64 x 64 pixels, each against a reference of its own", 64, 2048, modes)
+
+
+main()
