@@ -7,6 +7,7 @@ mod common;
 
 mod cameras;
 mod cutouts;
+mod detectors;
 mod emission;
 mod enclosures;
 mod interfaces;

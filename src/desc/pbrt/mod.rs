@@ -21,6 +21,7 @@ mod options;
 mod params;
 mod reader;
 mod report;
+mod sensor;
 mod shape;
 mod spectrum;
 mod state;
