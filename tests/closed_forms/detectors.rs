@@ -30,7 +30,7 @@ fn through([x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> f64 {
 }
 
 /// Cos⁴ varies little over a pixel; what noise there is comes from the wavelengths.
-const PIXELS: Judge = Judge { power: (0.03, 0.005) };
+const PIXELS: Judge = Judge { power: (0.05, 0.005) };
 
 #[test]
 fn the_irradiance_of_a_pinhole_is_the_cosine_over_the_pixels_solid_angle() {

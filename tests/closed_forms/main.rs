@@ -14,6 +14,7 @@ mod interfaces;
 mod irradiance;
 mod lights;
 mod motion;
+mod wavelengths;
 
 use common::effort;
 use common::render::{Built, Judge, combinations, parse};

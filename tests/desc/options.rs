@@ -246,3 +246,41 @@ fn what_cannot_change_the_image_is_a_warning() {
     assert!(scene.warnings[0].message.contains("--backend"));
     assert_eq!(scene.views[0].sampler.kind, SamplerKind::Sobol);
 }
+
+#[test]
+fn films_know_their_sensor_and_lenses_their_blades() {
+    let read = scene(
+        r#"
+        ColorSpace "rec2020"
+        Film "rgb" "string sensor" "nikon_d850" "float whitebalance" 5000 "float maxcomponentvalue" 10 "string measure" "irradiance"
+        ColorSpace "srgb"
+        Camera "perspective" "integer blades" 6 "float bladerotation" 15
+        WorldBegin
+        AttributeBegin
+        ColorSpace "dci-p3"
+        Attribute "light" "rgb L" [1 2 3]
+        LightSource "point" "rgb I" [3 2 1]
+        ColorSpace "srgb"
+        LightSource "infinite"
+        AttributeEnd
+        LightSource "point" "rgb I" [3 2 1]
+        "#,
+    );
+    let view = &read.views[0];
+    assert_eq!(view.film.sensor, SensorDesc::Named("nikon_d850".to_owned()));
+    assert_eq!((view.film.white_balance, view.film.max_component), (Some(5000.0), 10.0));
+    assert_eq!((view.film.measure, view.film.color_space), (MeasureDesc::Irradiance, ColorSpace::Rec2020));
+    let blades = ApertureDesc::Polygon {
+        blades: 6,
+        rotation: 15.0,
+    };
+    assert_eq!(view.camera.aperture, blades);
+    // A colour is in the space at its own directive, also where `Attribute` gives it.
+    let colors: Vec<SpectrumValue> = read.lights.iter().filter_map(color_of).collect();
+    let expected = [
+        ([3.0, 2.0, 1.0], ColorSpace::DciP3),
+        ([1.0, 2.0, 3.0], ColorSpace::DciP3),
+        ([3.0, 2.0, 1.0], ColorSpace::Srgb),
+    ];
+    assert_eq!(colors, expected.map(|(rgb, space)| SpectrumValue::Rgb(rgb, space)));
+}
