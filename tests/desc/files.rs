@@ -234,7 +234,10 @@ fn sensors_may_be_files() {
     let plain = scene(&[("a.pbrt", &film.replace("curves.csv", "sony_ilce_9"))]);
     assert_eq!(plain.views[0].film.sensor, SensorDesc::Named("sony_ilce_9".to_owned()));
     for (curves, problem) in [
-        ("400 0 0 1\n500 0 x 1", "line 2 has something that is not a finite number"),
+        (
+            "400 0 0 1\n500 0 x 1",
+            "line 2 has something that is not a finite number",
+        ),
         ("400 0 0 1\n500 0 1", "line 2 must have four numbers"),
         ("400 0 0 1\n400 0 1 0", "line 2 must have a greater wavelength"),
         ("400 0 0 1", "two lines at least"),

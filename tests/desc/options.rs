@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    CameraKind, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc,
-    LightSamplerKind, MotionDesc, PathDesc, PixelRect, SamplerKind, Strategy, Termination,
+    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc,
+    IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect, SamplerKind,
+    SensorDesc, SpectrumValue, Strategy, Termination,
 };
 
 use crate::scene;
@@ -269,14 +270,21 @@ fn films_know_their_sensor_and_lenses_their_blades() {
     let view = &read.views[0];
     assert_eq!(view.film.sensor, SensorDesc::Named("nikon_d850".to_owned()));
     assert_eq!((view.film.white_balance, view.film.max_component), (Some(5000.0), 10.0));
-    assert_eq!((view.film.measure, view.film.color_space), (MeasureDesc::Irradiance, ColorSpace::Rec2020));
+    assert_eq!(
+        (view.film.measure, view.film.color_space),
+        (MeasureDesc::Irradiance, ColorSpace::Rec2020)
+    );
     let blades = ApertureDesc::Polygon {
         blades: 6,
         rotation: 15.0,
     };
     assert_eq!(view.camera.aperture, blades);
     // A colour is in the space at its own directive, also where `Attribute` gives it.
-    let colors: Vec<SpectrumValue> = read.lights.iter().filter_map(color_of).collect();
+    let colors: Vec<SpectrumValue> = read
+        .lights
+        .iter()
+        .filter_map(|light| light.spectrum.as_ref().map(|spectrum| spectrum.value.clone()))
+        .collect();
     let expected = [
         ([3.0, 2.0, 1.0], ColorSpace::DciP3),
         ([1.0, 2.0, 3.0], ColorSpace::DciP3),
