@@ -11,6 +11,7 @@ use std::time::Instant;
 #[allow(dead_code, unused_imports, missing_docs)]
 mod spectrum {
     mod cie;
+    mod color_space;
     mod description;
     mod named;
     mod rgb2spec;
@@ -19,6 +20,7 @@ mod spectrum {
     mod sampled;
     mod wavelengths;
 
+    pub use color_space::ColorSpace;
     pub use sampled::{LANES, SampledSpectrum};
     pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};
 }
@@ -28,6 +30,7 @@ fn main() {
         "build.rs",
         "build/rgb_table.rs",
         "src/spectrum/cie.rs",
+        "src/spectrum/color_space.rs",
         "src/spectrum/data",
         "src/spectrum/named.rs",
         "src/spectrum/rgb2spec.rs",

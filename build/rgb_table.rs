@@ -3,7 +3,8 @@
 //! Axes: which component is the largest, its value (closer nodes near 0 and 1), and the other two over it. The layout, innermost
 //! first: three coefficients, the next component, the one after, the largest, which one that is.
 
-use super::rgb2spec::{RESPONSE, newton, solve_with};
+use super::ColorSpace;
+use super::rgb2spec::{newton, response, solve_with};
 use glam::DVec3;
 use std::thread;
 
@@ -50,7 +51,7 @@ fn coarse_response(step: usize) -> Vec<(f64, DVec3)> {
         let middle = bin.iter().map(|entry| entry.0).sum::<f64>() / bin.len() as f64;
         (middle, bin.iter().map(|entry| entry.1).sum())
     };
-    RESPONSE.chunks(step).map(bin).collect()
+    response(ColorSpace::Srgb).chunks(step).map(bin).collect()
 }
 
 /// The solutions for one largest component and one value of the component after the next, by z and then x.

@@ -1,5 +1,6 @@
 //! Cameras: from a point of the film, of the lens and of time to a ray.
 
+use crate::desc::{ApertureDesc, MeasureDesc};
 use crate::geometry::{Ray, RayCone};
 use crate::math::{AnimatedTransform, DAffine3, Vec2, Vec3};
 use crate::sampling::warp;
@@ -31,14 +32,17 @@ pub struct CameraSpec {
     pub lens_radius: f64,
     /// Distance of the plane that the lens images sharply.
     pub focal_distance: f64,
+    /// The shape of the lens.
+    pub aperture: ApertureDesc,
+    /// What a pixel measures.
+    pub measure: MeasureDesc,
     /// Scene times at which the shutter opens and closes, in [0, 1] after clamping: outside it everything stands still.
     pub shutter: [f64; 2],
     /// Where the camera is.
     pub world_from_camera: AnimatedTransform,
 }
 
-/// A camera of a picture. Its importance is normalised so that a pixel is the filter-weighted mean of radiance, as in pbrt and
-/// Mitsuba: every camera ray has weight 1.
+/// A camera of a picture.
 #[derive(Clone, Debug)]
 pub struct Camera {
     perspective: bool,
@@ -48,10 +52,41 @@ pub struct Camera {
     near_clip: f32,
     lens_radius: f32,
     focal_distance: f32,
+    aperture: Aperture,
+    /// The pixel's area on the screen plane, if a pixel is an irradiance.
+    irradiance_area: Option<f32>,
     shutter: [f32; 2],
     world_from_camera: AnimatedTransform,
     /// The transform's rows, where nothing moves.
     fixed: Option<CameraFrame>,
+}
+
+/// The shape of the lens, of radius 1.
+#[derive(Clone, Copy, Debug)]
+enum Aperture {
+    Round,
+    /// Corners, and cosine and sine of the angle of the first.
+    Polygon(u32, Vec2),
+}
+
+impl Aperture {
+    fn new(desc: ApertureDesc) -> Self {
+        match desc {
+            ApertureDesc::Round => Self::Round,
+            ApertureDesc::Polygon { blades, rotation } => {
+                Self::Polygon(blades, Vec2::from_angle(rotation.to_radians() as f32))
+            }
+        }
+    }
+
+    /// A point of it, uniform by area.
+    #[inline]
+    fn sample(self, u: Vec2) -> Vec2 {
+        match self {
+            Self::Round => warp::sample_uniform_disk(u),
+            Self::Polygon(blades, turn) => turn.rotate(warp::sample_regular_polygon(u, blades)),
+        }
+    }
 }
 
 /// An affine transform in single precision, by its columns.
@@ -113,6 +148,11 @@ impl Camera {
             near_clip: near_clip as f32,
             lens_radius: spec.lens_radius as f32,
             focal_distance: spec.focal_distance as f32,
+            aperture: Aperture::new(spec.aperture),
+            irradiance_area: match spec.measure {
+                MeasureDesc::Radiance => None,
+                MeasureDesc::Irradiance => Some((per_pixel[0] * per_pixel[1]).abs() as f32),
+            },
             shutter: spec.shutter.map(|t| t as f32),
             fixed: is_static.then(|| CameraFrame::new(&spec.world_from_camera.at(0.0))),
             world_from_camera: spec.world_from_camera.clone(),
@@ -124,6 +164,45 @@ impl Camera {
     pub fn sample_ray(&self, sample: &CameraSample) -> Ray {
         let time = self.shutter[0] + sample.time * (self.shutter[1] - self.shutter[0]);
         let time = time.clamp(0.0, 1.0);
+        let (origin, direction) = self.local_ray(sample);
+        // On to the near plane (`direction` has the depth 1).
+        let origin = origin + direction * self.near_clip;
+        let frame = match &self.fixed {
+            Some(frame) => *frame,
+            None => CameraFrame::new(&self.world_from_camera.at(time)),
+        };
+        Ray::new(frame.point(origin), frame.vector(direction).normalize(), time)
+    }
+
+    /// What the radiance along the ray of a sample counts for a pixel, besides the filter's weight: 1 if the pixel is a mean of
+    /// radiance, as in pbrt and Mitsuba.
+    ///
+    /// If it is an irradiance, the expectation over film, lens and time of this weight times the radiance L is
+    ///
+    /// - perspective: the integral of L cos θ over the solid angle of the pixel, as the screen at distance 1 subtends it: the
+    ///   irradiance that comes through the pixel onto the plane of the eye or, on average, of the lens. The solid angle element is
+    ///   cos³ θ times that of the screen, so the weight is the pixel's area there times cos⁴ θ;
+    /// - orthographic: the integral of L cos θ over the area of the pixel, in units of camera space; the weight is that area times
+    ///   cos θ, which is 1 without a lens.
+    ///
+    /// θ is the angle between the ray and the camera's axis. A filter that is wider than the pixel is scaled to the same integral.
+    #[inline]
+    pub fn importance(&self, sample: &CameraSample) -> f32 {
+        let Some(area) = self.irradiance_area else {
+            return 1.0;
+        };
+        let (_, direction) = self.local_ray(sample);
+        let cos_squared = 1.0 / direction.length_squared();
+        if self.perspective {
+            area * cos_squared * cos_squared
+        } else {
+            area * cos_squared.sqrt()
+        }
+    }
+
+    /// Origin, on the lens, and direction, with z = 1, in camera space.
+    #[inline]
+    fn local_ray(&self, sample: &CameraSample) -> (Vec3, Vec3) {
         let screen = self.screen_origin + sample.film * self.screen_per_pixel;
         let (mut origin, mut direction) = if self.perspective {
             (Vec3::ZERO, screen.extend(1.0))
@@ -132,21 +211,13 @@ impl Camera {
         };
         if self.lens_radius > 0.0 {
             let focus = origin + direction * self.focal_distance;
-            let lens = warp::sample_uniform_disk(sample.lens) * self.lens_radius;
+            let lens = self.aperture.sample(sample.lens) * self.lens_radius;
             origin += lens.extend(0.0);
             direction = (focus - origin) / self.focal_distance;
         }
-        // The direction's z is 1 here: to the near plane in so many steps.
-        origin += direction * self.near_clip;
-        let frame = match &self.fixed {
-            Some(frame) => *frame,
-            None => CameraFrame::new(&self.world_from_camera.at(time)),
-        };
-        Ray::new(frame.point(origin), frame.vector(direction).normalize(), time)
+        (origin, direction)
     }
-}
 
-impl Camera {
     /// How wide the ray through the point `film` (see [`CameraSample::film`]) is, if it stands for a square of `scale` pixels a
     /// side. The lens does not matter: what is out of focus is filtered by its rays.
     #[inline]
@@ -181,6 +252,8 @@ mod tests {
             resolution: [200, 100],
             lens_radius: 0.0,
             focal_distance: 5.0,
+            aperture: ApertureDesc::Round,
+            measure: MeasureDesc::Radiance,
             shutter: [0.25, 0.75],
             world_from_camera: AnimatedTransform::identity(),
         }

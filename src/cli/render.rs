@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::image_io::{Image, ImageFormat, ImageMetadata, PendingOutput, Window};
 use crate::integrator::{Integrator, RenderStats};
 use crate::scene::{Scene, SceneOptions, View, ViewOverrides};
+use crate::spectrum::ColorSpace;
 
 /// The whole job.
 struct Job<'a> {
@@ -232,9 +233,17 @@ impl<'a> Job<'a> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             render_seconds: stats.render_time.as_secs_f64(),
             scene_hash: prepared.desc.hash.clone(),
+            chromaticities: chromaticities(view.color_space),
         };
         let image = Image::rgb(data_window(&view), display_window(&view), film.develop())?;
         let written = output.commit(&image, Some(&metadata), self.args.exposure)?;
+        if view.color_space != ColorSpace::Srgb && written.path.extension().is_none_or(|e| e != "exr") {
+            let name = view.color_space.name();
+            reporter.say(&format!(
+                "{} cannot say that its colors are in {name}: programs will take them for sRGB",
+                written.path.display()
+            ));
+        }
         if let Some(reason) = &written.instead_because {
             (self.print_error)(reason);
             reporter.say(&format!("the picture is in {} instead", written.path.display()));
@@ -352,6 +361,12 @@ struct Prepared {
 struct Picture {
     view: View,
     output: PendingOutput,
+}
+
+/// Red, green, blue and white of a colour space.
+fn chromaticities(space: ColorSpace) -> [[f32; 2]; 4] {
+    let [red, green, blue] = space.primaries();
+    [red, green, blue, space.white()].map(|xy| xy.map(|c| c as f32))
 }
 
 /// The pixels rendered.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{ImageId, MaterialId, MeasuredDesc, TextureId, Textured};
+use super::{ColorSpace, ImageId, MaterialId, MeasuredDesc, TextureId, Textured};
 use crate::error::Span;
 
 /// What a surface is made of.
@@ -197,9 +197,9 @@ pub struct SpectrumDesc {
 pub enum SpectrumValue {
     /// The same at all wavelengths.
     Constant(f32),
-    /// Linear sRGB. In [0, 1] where it is an albedo, else not negative.
-    Rgb([f32; 3]),
-    /// One of pbrt-v4's names (`metal-Cu-eta`, `glass-BK7`, `stdillum-D65`, ...).
+    /// Linear in a colour space. In [0, 1] where it is an albedo, else not negative.
+    Rgb([f32; 3], ColorSpace),
+    /// One of the names of [`crate::spectrum::named_spectra`] (`metal-Cu-eta`, `glass-BK7`, `stdillum-D65`, ...).
     Named(String),
     /// (wavelength in nm, value), by increasing wavelength, at least one; linear in between and constant outside.
     Samples(Vec<(f32, f32)>),

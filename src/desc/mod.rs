@@ -11,7 +11,10 @@
 //! - `"float nearclip"` of a perspective camera, see [`CameraKind::Perspective`];
 //! - `"point3 P1"` of a `trianglemesh`, see [`MeshDesc::positions_end`];
 //! - `"integer maxdepth" -1` of an integrator: paths of any length;
-//! - `PixelFilter "blackmanharris"`.
+//! - `PixelFilter "blackmanharris"`;
+//! - a file of responses as the `sensor` of a film, see [`SensorDesc::Curves`], and its `measure`, see [`MeasureDesc`];
+//! - `"integer blades"` and `"float bladerotation"` of a camera, see [`ApertureDesc`];
+//! - glasses by Sellmeier's equation and more metals among the spectra with names.
 
 mod bytes;
 mod integrator;
@@ -37,6 +40,7 @@ use glam::DAffine3;
 use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
+pub use crate::spectrum::ColorSpace;
 pub use integrator::{
     Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
     Termination,
@@ -58,7 +62,10 @@ pub use texture::{
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
 };
 pub use texture_kinds::{TEXTURES, TextureEntry};
-pub use view::{CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect, SamplerDesc, ViewDesc};
+pub use view::{
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,
+    SamplerDesc, SensorDesc, ViewDesc,
+};
 
 /// A whole scene, as its file describes it.
 ///

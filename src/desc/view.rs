@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::MotionDesc;
 use crate::error::Span;
 use crate::sampling::SamplerKind;
+use crate::spectrum::ColorSpace;
 
 /// One picture to be taken of the scene.
 #[derive(Clone, Debug)]
@@ -38,10 +39,27 @@ pub struct CameraDesc {
     pub lens_radius: f64,
     /// Distance of the plane of focus, in scene units, positive.
     pub focal_distance: f64,
+    /// The shape of the lens.
+    pub aperture: ApertureDesc,
     /// When the shutter opens and closes, in the time of [`super::SceneDesc::transform_times`]; open < close.
     pub shutter: [f64; 2],
     /// The inverse of pbrt's current transform at the `Camera` directive.
     pub world_from_camera: MotionDesc,
+}
+
+/// The shape of the opening of a thin lens.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ApertureDesc {
+    /// A disk.
+    #[default]
+    Round,
+    /// A regular polygon with its corners on the rim of the disk (Lucerna's extension).
+    Polygon {
+        /// Its corners, from 3 to 64.
+        blades: u32,
+        /// Degrees by which the first corner is turned from +x towards +y of the camera.
+        rotation: f64,
+    },
 }
 
 /// The projection of a camera.
@@ -91,6 +109,16 @@ pub struct FilmDesc {
     pub iso: f64,
     /// How long the shutter is open: close - open of the view's camera, as in pbrt-v4; positive.
     pub exposure_time: f64,
+    /// What light does to it.
+    pub sensor: SensorDesc,
+    /// The temperature, in kelvin, of the daylight that looks white; positive. `None` if the file does not say.
+    pub white_balance: Option<f64>,
+    /// The largest value of a sample, positive; infinite if the file does not say.
+    pub max_component: f64,
+    /// The colour space of the picture: the one in force at the `Film` directive.
+    pub color_space: ColorSpace,
+    /// What of radiance a pixel is.
+    pub measure: MeasureDesc,
     /// The `Film` directive; the whole file's first byte if there is none.
     pub span: Span,
 }
@@ -100,6 +128,30 @@ impl FilmDesc {
     pub fn imaging_ratio(&self) -> f64 {
         self.exposure_time * self.iso / 100.0
     }
+}
+
+/// The spectral response of a film.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum SensorDesc {
+    /// The CIE 1931 observer.
+    #[default]
+    Cie1931,
+    /// A camera of [`crate::spectrum::sensor_names`].
+    Named(String),
+    /// Wavelength in nm, responses of red, green and blue pixels (Lucerna's extension): by increasing wavelength, two rows at
+    /// least; linear in between, zero outside.
+    Curves(Vec<[f32; 4]>),
+}
+
+/// What a pixel measures (Lucerna's extension).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeasureDesc {
+    /// The mean of the radiance that it sees, weighted by the pixel filter: as in pbrt.
+    #[default]
+    Radiance,
+    /// The integral of radiance times the cosine over the directions (or, of an orthographic camera, the area) that it sees. See
+    /// [`crate::camera::Camera::importance`].
+    Irradiance,
 }
 
 /// Which part of an image is rendered.

@@ -6,6 +6,6 @@ mod sums;
 
 pub use crate::desc::{FilterKind, PixelRect};
 pub use filter::{FilterSample, PixelFilter};
-pub use sensor::Sensor;
+pub use sensor::{Sensor, SensorSpec};
 pub(crate) use sums::lock;
 pub use sums::{Film, TILE_SIZE, TileSums};

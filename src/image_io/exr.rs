@@ -18,12 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// The primaries and white of Rec. 709 and sRGB, which all images of this crate have.
-const REC_709: Chromaticities = Chromaticities {
-    red: Vec2(0.64, 0.33),
-    green: Vec2(0.30, 0.60),
-    blue: Vec2(0.15, 0.06),
-    white: Vec2(0.3127, 0.3290),
-};
+const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 /// Reads R, G, B and, if present, A of an EXR file, or Y and A of a grey one: half, float or integer samples, scan lines or tiles
 /// (the largest level), any compression but HTJ2K and DWA's unsupported variants. Of several parts the first is read; other
@@ -63,7 +58,14 @@ fn decode_unguarded(bytes: &[u8]) -> Result<(Image, Option<ImageMetadata>), Stri
     let display_window = window_from(file.attributes.display_window)?;
     let data = interleave(&planes, data_window.pixel_count());
     let image = Image::new(data_window, display_window, names, data).map_err(|error| error.to_string())?;
-    Ok((image, ImageMetadata::from_attributes(&layer.attributes.other)))
+    let chromaticities = file
+        .attributes
+        .chromaticities
+        .map_or(REC_709, |c| [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y]));
+    Ok((
+        image,
+        ImageMetadata::from_attributes(&layer.attributes.other, chromaticities),
+    ))
 }
 
 /// Refuses an image that memory cannot hold: a damaged header may ask for any size, and a failed allocation would end the process.
@@ -161,7 +163,13 @@ fn header_of(image: &Image, metadata: Option<&ImageMetadata>) -> Result<Header, 
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_display_window(display)
         .with_attributes(attributes);
-    header.shared_attributes.chromaticities = Some(REC_709);
+    let [red, green, blue, white] = metadata.map_or(REC_709, |m| m.chromaticities).map(|[x, y]| Vec2(x, y));
+    header.shared_attributes.chromaticities = Some(Chromaticities {
+        red,
+        green,
+        blue,
+        white,
+    });
     Ok(header)
 }
 

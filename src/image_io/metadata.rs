@@ -21,6 +21,8 @@ pub struct ImageMetadata {
     pub render_seconds: f64,
     /// `lucerna:scene_hash`, of the scene description, in hexadecimal.
     pub scene_hash: String,
+    /// Chromaticities (x, y) of red, green, blue and white, the standard attribute `chromaticities`: what colour space R, G and B are in.
+    pub chromaticities: [[f32; 2]; 4],
 }
 
 const SEED: &str = "lucerna:seed";
@@ -49,7 +51,10 @@ impl ImageMetadata {
     }
 
     /// The metadata among a file's attributes; `None` unless all of it is there with the right types.
-    pub(super) fn from_attributes(attributes: &HashMap<Text, AttributeValue>) -> Option<Self> {
+    pub(super) fn from_attributes(
+        attributes: &HashMap<Text, AttributeValue>,
+        chromaticities: [[f32; 2]; 4],
+    ) -> Option<Self> {
         let value = |name: &str| attributes.get(&latin1(name));
         let text = |name: &str| match value(name) {
             Some(AttributeValue::Text(text)) => Some(text.to_string()),
@@ -69,6 +74,7 @@ impl ImageMetadata {
             version: text(VERSION)?,
             render_seconds,
             scene_hash: text(SCENE_HASH)?,
+            chromaticities,
         })
     }
 }

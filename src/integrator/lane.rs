@@ -14,6 +14,8 @@ pub(super) struct Slot {
     pub sample: u32,
     /// Of the pixel filter.
     pub filter_weight: f32,
+    /// What the radiance counts besides, see [`crate::camera::Camera::importance`].
+    pub importance: f32,
     /// Its wavelengths.
     pub lambda: Wavelengths,
     /// Radiance gathered so far, not divided by the density of the wavelengths.

@@ -231,7 +231,7 @@ impl<'a> Wave<'a> {
                 continue;
             }
             let good = !slot.broken && slot.l.is_finite() && slot.l.min_value() >= 0.0;
-            let rgb = good.then(|| self.view.sensor.to_rgb(slot.l, &slot.lambda));
+            let rgb = good.then(|| self.view.sensor.to_rgb(slot.l * slot.importance, &slot.lambda));
             if !sums.add(x, y, rgb, slot.filter_weight) {
                 self.stats.drop_sample(DroppedSample {
                     pixel: slot.pixel,
@@ -269,6 +269,7 @@ fn camera_slot(
         pixel,
         sample,
         filter_weight: filter.weight,
+        importance: view.camera.importance(&camera_sample),
         lambda,
         l: SampledSpectrum::ZERO,
         broken: false,

@@ -40,7 +40,7 @@ impl SpectrumCompiler {
 fn spectrum(value: &SpectrumValue, rgb: fn([f32; 3]) -> Spectrum, outside: Outside) -> Spectrum {
     match value {
         SpectrumValue::Constant(value) => Spectrum::constant(*value),
-        SpectrumValue::Rgb(value) => rgb(*value),
+        SpectrumValue::Rgb(value, space) => rgb(*value).in_space(*space),
         // The parser knows the names; one that is not there is black.
         SpectrumValue::Named(name) => Spectrum::named(name).unwrap_or_else(|| Spectrum::constant(0.0)),
         SpectrumValue::Samples(samples) => Spectrum::tabulated(samples.clone(), outside),

@@ -312,7 +312,7 @@ fn white(span: Span) -> SpectrumDesc {
 fn at_most_one(desc: &SpectrumDesc) -> SpectrumDesc {
     let value = match &desc.value {
         SpectrumValue::Constant(value) => SpectrumValue::Constant(value.min(1.0)),
-        SpectrumValue::Rgb(rgb) => SpectrumValue::Rgb(rgb.map(|c| c.min(1.0))),
+        SpectrumValue::Rgb(rgb, space) => SpectrumValue::Rgb(rgb.map(|c| c.min(1.0)), *space),
         SpectrumValue::Samples(samples) => {
             SpectrumValue::Samples(samples.iter().map(|&(nm, value)| (nm, value.min(1.0))).collect())
         }

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use super::shapes::animated;
 use crate::camera::{Camera, CameraSpec, Projection};
-use crate::desc::{CameraKind, SceneDesc, ViewDesc};
+use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
-use crate::film::{Film, PixelFilter, PixelRect, Sensor};
+use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
 use crate::sampling::{Sampler, SamplerKind};
-use crate::spectrum::ColorMode;
+use crate::spectrum::{ColorMode, ColorSpace, Outside, Spectrum, sensor_curves};
 
 /// Everything about a picture that is not the scene.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct View {
     pub filter: PixelFilter,
     /// What the film records of light.
     pub sensor: Sensor,
+    /// What the picture's red, green and blue are.
+    pub color_space: ColorSpace,
     /// The source of random numbers, with the number of samples a pixel.
     pub sampler: Sampler,
     /// Which of the samples of each pixel are rendered; within the number that the sampler plans for.
@@ -55,7 +57,7 @@ impl View {
     /// The view that `view` of `desc` describes, for transport in `color`.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a camera or filter that cannot be had, [`Error::Usage`] for an override that makes no sense.
+    /// [`Error::Scene`] for a camera, filter or sensor that cannot be had, [`Error::Usage`] for an override that makes no sense.
     pub fn build(desc: &SceneDesc, view: &ViewDesc, color: ColorMode, overrides: &ViewOverrides) -> Result<Self> {
         let problem =
             |message: String| Error::Scene(vec![desc.sources.diagnostic(Severity::Error, view.span, message)]);
@@ -83,7 +85,8 @@ impl View {
             resolution,
             crop,
             filter,
-            sensor: Sensor::new(color, view.film.imaging_ratio()),
+            sensor: Sensor::new(color, &sensor_spec(&view.film)).map_err(problem)?,
+            color_space: view.film.color_space,
             sampler: Sampler::new(kind, overrides.seed, spp),
             samples: overrides.sample.map_or(0..spp, |sample| sample..sample + 1),
             filename: view.film.filename.clone(),
@@ -102,6 +105,24 @@ impl View {
     }
 }
 
+fn sensor_spec(film: &FilmDesc) -> SensorSpec {
+    SensorSpec {
+        curves: match &film.sensor {
+            SensorDesc::Cie1931 => None,
+            // The parser knows the names.
+            SensorDesc::Named(name) => sensor_curves(name),
+            SensorDesc::Curves(rows) => Some([1, 2, 3].map(|channel| {
+                let points = rows.iter().map(|row| (row[0], row[channel])).collect();
+                Spectrum::tabulated(points, Outside::Zero)
+            })),
+        },
+        white_balance: film.white_balance,
+        color_space: film.color_space,
+        imaging_ratio: film.imaging_ratio(),
+        max_component: film.max_component,
+    }
+}
+
 fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<CameraSpec, String> {
     let camera = &view.camera;
     let [start, end] = desc.transform_times;
@@ -114,6 +135,8 @@ fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Resul
         resolution,
         lens_radius: camera.lens_radius,
         focal_distance: camera.focal_distance,
+        aperture: camera.aperture,
+        measure: view.film.measure,
         shutter: camera.shutter.map(|time| (time - start) / (end - start)),
         world_from_camera: animated(&camera.world_from_camera)?,
     })

@@ -6,10 +6,8 @@
 
 use std::sync::LazyLock;
 
-use glam::{DMat3, DVec3};
-
 use super::wavelengths::{LAMBDA_MIN, Wavelengths};
-use super::{SampledSpectrum, named};
+use super::{ColorSpace, SampledSpectrum};
 
 /// Entries of a table: 360 to 830 nm.
 pub(super) const ENTRIES: usize = 471;
@@ -102,47 +100,21 @@ pub fn integrate_y(f: impl Fn(f32) -> f32) -> f64 {
     bars.map(|(i, &y)| f64::from(f(wavelength(i))) * f64::from(y)).sum()
 }
 
-/// Chromaticities (x, y) of the primaries of sRGB (ITU-R BT.709).
-const SRGB_PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
-
-struct Srgb {
-    xyz_from_rgb: DMat3,
-    rgb_from_xyz: DMat3,
-}
-
-/// The primaries scaled so that (1, 1, 1) has the colour of D65 and Y = 1.
-static SRGB: LazyLock<Srgb> = LazyLock::new(|| {
-    let white = DVec3::from(integrate_xyz(|nm| named::d65().at(nm)));
-    let white = white / white.y;
-    let primaries = SRGB_PRIMARIES.map(|[x, y]| DVec3::new(x / y, 1.0, (1.0 - x - y) / y));
-    let primaries = DMat3::from_cols(primaries[0], primaries[1], primaries[2]);
-    let xyz_from_rgb = primaries * DMat3::from_diagonal(primaries.inverse() * white);
-    Srgb {
-        xyz_from_rgb,
-        rgb_from_xyz: xyz_from_rgb.inverse(),
-    }
-});
-
 /// Linear sRGB of an XYZ; linear, so the scale of the input is that of the output. Components are negative for colours
 /// outside the gamut.
 pub fn xyz_to_srgb(xyz: [f64; 3]) -> [f64; 3] {
-    (SRGB.rgb_from_xyz * DVec3::from(xyz)).into()
+    ColorSpace::Srgb.xyz_to_rgb(xyz)
 }
 
 /// XYZ of linear sRGB: (1, 1, 1) gives the white of D65 with Y = 1.
 pub fn srgb_to_xyz(rgb: [f64; 3]) -> [f64; 3] {
-    (SRGB.xyz_from_rgb * DVec3::from(rgb)).into()
-}
-
-/// The matrix of [`xyz_to_srgb`] by rows, for the inner loop of a film.
-pub fn srgb_from_xyz_rows() -> [[f32; 3]; 3] {
-    SRGB.rgb_from_xyz.transpose().as_mat3().to_cols_array_2d()
+    ColorSpace::Srgb.rgb_to_xyz(rgb)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spectrum::LANES;
+    use crate::spectrum::{LANES, named};
 
     #[test]
     fn observer_is_the_published_one() {
@@ -169,7 +141,8 @@ mod tests {
             [-0.9689, 1.8758, 0.0415],
             [0.0557, -0.2040, 1.0570],
         ];
-        for (row, expected) in srgb_from_xyz_rows().iter().zip(&printed) {
+        let rows = ColorSpace::Srgb.rgb_from_xyz().transpose().to_cols_array_2d();
+        for (row, expected) in rows.iter().zip(&printed) {
             for (a, b) in row.iter().zip(expected) {
                 assert!((a - b).abs() < 2e-3, "{row:?} and {expected:?}");
             }

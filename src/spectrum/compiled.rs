@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::cie::{self, DenseTable};
 use super::description::{Kind, RgbSpectrum, Shape, Spectrum};
 use super::rgb2spec::SigmoidPolynomial;
-use super::{ColorMode, LAMBDA_D, LANES, SampledSpectrum, SpectrumRole, Wavelengths, named};
+use super::{ColorMode, ColorSpace, LAMBDA_D, LANES, SampledSpectrum, SpectrumRole, Wavelengths, named};
 
 /// A [`Spectrum`] made ready for one [`ColorMode`] and [`SpectrumRole`]. Cheap to clone and to sample.
 #[derive(Clone, Debug)]
@@ -86,7 +86,7 @@ impl Spectrum {
     /// In spectral mode a sample is the value at each wavelength; tables are sampled at the nearest nm.
     ///
     /// In rgb mode the lanes are linear sRGB and a zero:
-    /// - [`SpectrumRole::Reflectance`]: an rgb albedo or unbounded rgb as given; anything else by its colour under D65 (of a
+    /// - [`SpectrumRole::Reflectance`]: an rgb albedo or unbounded rgb of sRGB as given; anything else by its colour under D65 (of a
     ///   constant c that is (c, c, c)).
     /// - [`SpectrumRole::Emission`]: the XYZ integrals, as a film's sensor takes them (not divided by the integral of ȳ), in
     ///   linear sRGB. For an rgb illuminant that is rgb times [`Spectrum::photometric`], the integral of ȳ times D65; so a
@@ -127,7 +127,9 @@ impl Spectrum {
         match (role, &self.0) {
             (SpectrumRole::Ior, _) => SampledSpectrum::splat(self.value(LAMBDA_D)),
             (SpectrumRole::Reflectance, Kind::Constant(value)) => lanes([*value; 3]),
-            (SpectrumRole::Reflectance, Kind::Rgb(rgb)) if !rgb.illuminant => lanes(rgb.rgb),
+            (SpectrumRole::Reflectance, Kind::Rgb(rgb)) if !rgb.illuminant && rgb.space == ColorSpace::Srgb => {
+                lanes(rgb.rgb)
+            }
             (SpectrumRole::Reflectance, _) => {
                 let d65 = named::d65();
                 let xyz = cie::integrate_xyz(|nm| self.value(nm) * d65.at(nm));
@@ -135,7 +137,9 @@ impl Spectrum {
                 let largest = self.max_value();
                 lanes(cie::xyz_to_srgb(xyz).map(|c| ((c / white) as f32).min(largest).max(0.0)))
             }
-            (SpectrumRole::Emission, Kind::Rgb(rgb)) if rgb.illuminant => lanes(rgb.rgb) * self.photometric(),
+            (SpectrumRole::Emission, Kind::Rgb(rgb)) if rgb.illuminant && rgb.space == ColorSpace::Srgb => {
+                lanes(rgb.rgb) * self.photometric()
+            }
             (SpectrumRole::Emission, _) => {
                 let xyz = cie::integrate_xyz(|nm| self.value(nm));
                 lanes(cie::xyz_to_srgb(xyz).map(|c| (c as f32).max(0.0)))
@@ -147,8 +151,8 @@ impl Spectrum {
 fn spectral_rgb(rgb: &RgbSpectrum) -> Form {
     match (rgb.shape(), rgb.illuminant) {
         (Shape::Grey(value), false) => Form::Constant(SampledSpectrum::splat(value * rgb.scale)),
-        (Shape::Grey(value), true) => Form::Dense(value * rgb.scale, named::d65().clone()),
-        (Shape::Sigmoid(polynomial), true) => Form::Illuminant(rgb.scale, polynomial, named::d65().clone()),
+        (Shape::Grey(value), true) => Form::Dense(value * rgb.scale, rgb.space.illuminant().clone()),
+        (Shape::Sigmoid(polynomial), true) => Form::Illuminant(rgb.scale, polynomial, rgb.space.illuminant().clone()),
         (Shape::Sigmoid(polynomial), false) if rgb.scale == 1.0 => Form::Sigmoid(polynomial),
         (Shape::Sigmoid(polynomial), false) => Form::ScaledSigmoid(rgb.scale, polynomial),
     }

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::cie::{self, DenseTable};
+use super::color_space::ColorSpace;
 use super::named;
 use super::rgb2spec::{self, SigmoidPolynomial};
 
@@ -33,12 +34,13 @@ pub(super) enum Kind {
     },
 }
 
-/// A spectrum for linear sRGB: `scale` times a reflectance in [0, 1], times D65 if `illuminant`.
+/// A spectrum for linear RGB: `scale` times a reflectance in [0, 1], times the white of the colour space if `illuminant`.
 #[derive(Clone, Debug)]
 pub(super) struct RgbSpectrum {
     pub rgb: [f32; 3],
     pub scale: f32,
     pub illuminant: bool,
+    pub space: ColorSpace,
     /// Found when first needed: rgb mode never does.
     shape: OnceLock<Shape>,
 }
@@ -57,6 +59,7 @@ impl RgbSpectrum {
             rgb,
             scale,
             illuminant,
+            space: ColorSpace::Srgb,
             shape: OnceLock::new(),
         }
     }
@@ -70,7 +73,7 @@ impl RgbSpectrum {
             } else if r == g && g == b {
                 Shape::Grey(r / self.scale)
             } else {
-                Shape::Sigmoid(rgb2spec::solve(self.rgb.map(|c| c / self.scale)))
+                Shape::Sigmoid(rgb2spec::solve(self.space, self.rgb.map(|c| c / self.scale)))
             }
         })
     }
@@ -80,7 +83,11 @@ impl RgbSpectrum {
             Shape::Grey(value) => value,
             Shape::Sigmoid(polynomial) => polynomial.at(nm),
         };
-        let light = if self.illuminant { named::d65().at(nm) } else { 1.0 };
+        let light = if self.illuminant {
+            self.space.illuminant().at(nm)
+        } else {
+            1.0
+        };
         self.scale * reflectance * light
     }
 }
@@ -108,6 +115,20 @@ impl Spectrum {
         Self(Kind::Rgb(RgbSpectrum::new(rgb, twice_largest(rgb), true)))
     }
 
+    /// This spectrum with its rgb taken as linear in `space` instead of sRGB; its white is what an rgb illuminant is multiplied by.
+    /// Spectra that are not of an rgb stay as they are.
+    #[must_use]
+    pub fn in_space(self, space: ColorSpace) -> Self {
+        match self.0 {
+            Kind::Rgb(rgb) => Self(Kind::Rgb(RgbSpectrum {
+                space,
+                shape: OnceLock::new(),
+                ..rgb
+            })),
+            kind => Self(kind),
+        }
+    }
+
     /// Values at wavelengths in nm, which increase strictly, linear between them. Without any the spectrum is zero.
     pub fn tabulated(points: Vec<(f32, f32)>, outside: Outside) -> Self {
         Self(Kind::Tabulated {
@@ -127,8 +148,8 @@ impl Spectrum {
         Self::of_named(named::find("stdillum-D65").expect("the tables have D65"))
     }
 
-    /// The spectrum that pbrt-v4 knows by this name (`glass-BK7`, `metal-Au-k`, `stdillum-F2`); [`named_spectra`] lists them
-    /// all. Illuminants are scaled to the luminance of a constant 1.
+    /// The spectrum of this name: pbrt-v4's (`glass-BK7`, `metal-Au-k`, `stdillum-F2`), more metals (`metal-W-eta`) and glasses by
+    /// Sellmeier's equation (`sellmeier-N-SF11`); [`named_spectra`] lists them all. Illuminants are scaled to the luminance of a constant 1.
     ///
     /// [`named_spectra`]: super::named_spectra
     pub fn named(name: &str) -> Option<Self> {
@@ -153,10 +174,10 @@ impl Spectrum {
     }
 
     /// The integral of ȳ times the spectrum, the luminance in units where K_m is left out. For an rgb illuminant it is that
-    /// of D65 alone, without the colour, as in pbrt-v4: lights divide by it, and an rgb light keeps the brightness of its rgb.
+    /// of the white alone, without the colour, as in pbrt-v4: lights divide by it, and an rgb light keeps the brightness of its rgb.
     pub fn photometric(&self) -> f32 {
         match &self.0 {
-            Kind::Rgb(rgb) if rgb.illuminant => cie::integrate_y(|nm| named::d65().at(nm)) as f32,
+            Kind::Rgb(rgb) if rgb.illuminant => cie::integrate_y(|nm| rgb.space.illuminant().at(nm)) as f32,
             _ => self.luminance(),
         }
     }
@@ -248,7 +269,7 @@ mod tests {
         assert!((bk7.value(LAMBDA_D) - 1.5168).abs() < 1e-4);
         assert_eq!(Spectrum::named("metal-Cu-eta").expect("known").value(302.4), 1.38);
         assert!(Spectrum::named("glass-BK8").is_none());
-        assert_eq!(named_spectra().count(), 37);
+        assert_eq!(named_spectra().count(), 37 + 2 * 2 + 10);
         for name in named_spectra() {
             let spectrum = Spectrum::named(name).expect("listed");
             assert!(spectrum.max_value() > 0.0, "{name}");
@@ -257,6 +278,39 @@ mod tests {
                     (spectrum.photometric() / cie::y_integral() - 1.0).abs() < 1e-5,
                     "{name}"
                 );
+            }
+        }
+    }
+
+    /// Catalogues print the index at the d line.
+    #[test]
+    fn sellmeier_glasses_have_their_index_at_the_d_line() {
+        for (glass, n_d) in [
+            ("N-BK7", 1.51680),
+            ("N-SF11", 1.78472),
+            ("N-LAK14", 1.69680),
+            ("N-FK51A", 1.48656),
+            ("fused-silica", 1.45846),
+            ("diamond", 2.4175),
+        ] {
+            let found = Spectrum::named(&format!("sellmeier-{glass}")).map(|s| s.value(LAMBDA_D));
+            assert!(
+                found.is_some_and(|n| (n - n_d).abs() < 3e-4),
+                "{glass}: {found:?} and {n_d}"
+            );
+        }
+    }
+
+    /// The lights of a wide space have their colour in it, and white is the space's own.
+    #[test]
+    fn rgb_lights_of_wide_spaces_have_their_colour() {
+        for space in ColorSpace::ALL {
+            for rgb in [[1.0, 1.0, 1.0], [3.0, 2.0, 1.0], [0.4, 0.7, 0.5]] {
+                let light = Spectrum::rgb_illuminant(rgb).in_space(space);
+                let xyz = cie::integrate_xyz(|nm| light.value(nm) / light.photometric());
+                for (a, b) in space.xyz_to_rgb(xyz).iter().zip(rgb) {
+                    assert!((a - f64::from(b)).abs() < 1e-5, "{space:?} {rgb:?}: {a}");
+                }
             }
         }
     }

@@ -6,6 +6,7 @@
 //! same code runs with the lanes R, G, B and a zero.
 
 pub mod cie;
+mod color_space;
 mod compiled;
 mod description;
 mod named;
@@ -13,15 +14,18 @@ mod rgb;
 mod rgb2spec;
 mod rgb_emission;
 mod sampled;
+mod sensors;
 mod table;
 mod wavelengths;
 
+pub use color_space::ColorSpace;
 pub use compiled::CompiledSpectrum;
 pub use description::{Outside, Spectrum};
 pub use named::named_spectra;
 pub use rgb::{RgbKind, RgbSampler};
 pub use rgb_emission::{EmissionPixel, RgbEmission, rgb_luminance};
 pub use sampled::{LANES, SampledSpectrum};
+pub use sensors::{ResponseTable, color_checker, daylight, sensor_curves, sensor_names};
 pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};
 
 /// What the four lanes of a path are.

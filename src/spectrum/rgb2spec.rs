@@ -2,14 +2,14 @@
 //! upsampling".
 //!
 //! A reflectance is s(p(λ)), p a polynomial of degree two, s(x) = 1/2 + x / (2 √(1 + x²)). The three coefficients are
-//! solved for here, per colour, so that the reflectance under D65 has exactly that colour.
+//! solved for here, per colour, so that the reflectance under the white of the colour space has exactly that colour.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use glam::{DMat3, DVec3};
 
 use super::cie::{self, ENTRIES, wavelength};
-use super::{SampledSpectrum, Wavelengths, named};
+use super::{ColorSpace, SampledSpectrum, Wavelengths};
 
 /// The middle and half width of the visible range: polynomials are in (λ - CENTRE) / HALF_RANGE, from -1 to 1, where single
 /// precision is enough even for the steep polynomials of saturated colours.
@@ -48,19 +48,25 @@ impl SigmoidPolynomial {
     }
 }
 
-/// For each nm what a reflectance of 1 there, under D65, adds to linear sRGB.
-pub(super) static RESPONSE: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
-    let d65 = named::d65();
-    let total = cie::integrate_y(|nm| d65.at(nm));
-    (0..ENTRIES)
-        .map(|i| {
-            let nm = wavelength(i);
-            let xyz = cie::integrate_xyz(|other| if other == nm { d65.at(nm) } else { 0.0 });
-            let t = f64::from((nm - CENTRE) / HALF_RANGE);
-            (t, DVec3::from(cie::xyz_to_srgb(xyz)) / total)
-        })
-        .collect()
-});
+/// A colour's change by a reflectance, by nm: t of the polynomial, and linear RGB.
+type Response = Vec<(f64, DVec3)>;
+
+/// For each nm what a reflectance of 1 there, under the white of a colour space, adds to linear RGB.
+pub(super) fn response(space: ColorSpace) -> &'static Response {
+    static RESPONSES: [OnceLock<Response>; ColorSpace::ALL.len()] = [const { OnceLock::new() }; ColorSpace::ALL.len()];
+    RESPONSES[space as usize].get_or_init(|| {
+        let light = space.illuminant();
+        let total = cie::integrate_y(|nm| light.at(nm));
+        (0..ENTRIES)
+            .map(|i| {
+                let nm = wavelength(i);
+                let xyz = cie::integrate_xyz(|other| if other == nm { light.at(nm) } else { 0.0 });
+                let t = f64::from((nm - CENTRE) / HALF_RANGE);
+                (t, DVec3::from(space.xyz_to_rgb(xyz)) / total)
+            })
+            .collect()
+    })
+}
 
 /// The colour of a polynomial's reflectance and its derivative by the coefficients.
 fn colour(response: &[(f64, DVec3)], coefficients: DVec3) -> (DVec3, DMat3) {
@@ -85,13 +91,14 @@ const TOLERANCE: f64 = 1e-9;
 /// The smallest step of the continuation: below it the rest of the way is left.
 const SMALLEST_STEP: f64 = 1e-5;
 
-/// The reflectance whose colour under D65 is `rgb`, linear sRGB in [0, 1] and not all components equal.
+/// The reflectance whose colour under the white of `space` is `rgb`, linear in that space, in [0, 1] and not all components equal.
 ///
 /// Follows the solutions along the line from middle grey, whose polynomial is zero, to the colour: from a close start
-/// Newton's method converges, and inside the cube there is a solution all along.
-pub(super) fn solve(rgb: [f32; 3]) -> SigmoidPolynomial {
+/// Newton's method converges, and inside the cube of sRGB there is a solution all along. In a wide space there are colours that no
+/// reflectance has: of those the answer is where the solutions end on the way to them.
+pub(super) fn solve(space: ColorSpace, rgb: [f32; 3]) -> SigmoidPolynomial {
     let goal = DVec3::from(rgb.map(f64::from));
-    SigmoidPolynomial(solve_with(&RESPONSE, goal).as_vec3().into())
+    SigmoidPolynomial(solve_with(response(space), goal).as_vec3().into())
 }
 
 /// [`solve`] for some response.
@@ -134,12 +141,13 @@ pub(super) fn newton(response: &[(f64, DVec3)], goal: DVec3, start: DVec3) -> Op
 mod tests {
     use super::*;
 
-    /// The colour, under D65, of the polynomial that is used in the end, in single precision.
-    fn round_trip(rgb: [f32; 3]) -> [f64; 3] {
-        let polynomial = solve(rgb);
-        let d65 = named::d65();
-        let xyz = cie::integrate_xyz(|nm| polynomial.at(nm) * d65.at(nm));
-        cie::xyz_to_srgb(xyz).map(|c| c / f64::from(cie::y_integral()))
+    /// The colour, under the white of the space, of the polynomial that is used in the end, in single precision.
+    fn round_trip(space: ColorSpace, rgb: [f32; 3]) -> [f64; 3] {
+        let polynomial = solve(space, rgb);
+        let light = space.illuminant();
+        let white = cie::integrate_y(|nm| light.at(nm));
+        let xyz = cie::integrate_xyz(|nm| polynomial.at(nm) * light.at(nm));
+        space.xyz_to_rgb(xyz).map(|c| c / white)
     }
 
     #[test]
@@ -153,7 +161,7 @@ mod tests {
             if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
                 continue;
             }
-            for (a, b) in round_trip(rgb).into_iter().zip(rgb) {
+            for (a, b) in round_trip(ColorSpace::Srgb, rgb).into_iter().zip(rgb) {
                 let error = (a - f64::from(b)).abs();
                 if error > worst.0 {
                     worst = (error, rgb);
@@ -161,5 +169,30 @@ mod tests {
             }
         }
         assert!(worst.0 < 2e-6, "{worst:?}");
+    }
+
+    /// Colours of sRGB stated in the wider spaces, and colours of these beyond it that reflectances have.
+    #[test]
+    fn wide_spaces_have_solutions() {
+        for space in ColorSpace::ALL {
+            for srgb in [[0.8, 0.1, 0.05], [0.1, 0.7, 0.2], [0.05, 0.1, 0.8], [0.9, 0.8, 0.1]] {
+                let rgb = space.xyz_to_rgb(cie::srgb_to_xyz(srgb)).map(|c| c as f32);
+                let found = round_trip(space, rgb);
+                let close = found.iter().zip(rgb).all(|(a, b)| (a - f64::from(b)).abs() < 2e-6);
+                assert!(close, "{space:?}: {rgb:?} became {found:?}");
+            }
+        }
+        for (space, rgb) in [
+            (ColorSpace::DciP3, [0.6, 0.005, 0.005]),
+            (ColorSpace::Rec2020, [0.02, 0.3, 0.03]),
+        ] {
+            let found = round_trip(space, rgb);
+            assert!(
+                found.iter().zip(rgb).all(|(a, b)| (a - f64::from(b)).abs() < 2e-6),
+                "{space:?}: {found:?}"
+            );
+            let srgb = cie::xyz_to_srgb(space.rgb_to_xyz(found));
+            assert!(srgb.iter().any(|&c| c < -0.01), "{space:?}: {srgb:?} is in sRGB");
+        }
     }
 }

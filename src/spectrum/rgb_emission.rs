@@ -10,7 +10,7 @@ use std::sync::{Arc, LazyLock};
 
 use super::cie::{self, DenseTable};
 use super::rgb2spec::{SigmoidPolynomial, solve};
-use super::{ColorMode, SampledSpectrum, Wavelengths, named};
+use super::{ColorMode, ColorSpace, SampledSpectrum, Wavelengths, named};
 
 /// Makes pixels in linear sRGB emit, scaled as lights are: white is D65 with a luminance (times the integral of ȳ) of 1.
 #[derive(Clone, Debug)]
@@ -102,7 +102,7 @@ impl Table {
         for largest in 0..3 {
             for i in 0..NODES {
                 for j in 0..NODES {
-                    table.push(solve(colour(largest, i, j)).coefficients());
+                    table.push(solve(ColorSpace::Srgb, colour(largest, i, j)).coefficients());
                 }
             }
         }

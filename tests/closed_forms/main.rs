@@ -7,12 +7,14 @@ mod common;
 
 mod cameras;
 mod cutouts;
+mod detectors;
 mod emission;
 mod enclosures;
 mod interfaces;
 mod irradiance;
 mod lights;
 mod motion;
+mod wavelengths;
 
 use common::effort;
 use common::render::{Built, Judge, combinations, parse};

@@ -16,13 +16,21 @@ const JUDGE: Judge = Judge { power: (0.1, 0.005) };
 /// A scene under a white sky, seen by parallel rays along +z (x to the right, y up); `shutter` is in scene time.
 fn scene(before: &str, shutter: [f64; 2], world: &str) -> String {
     let [open, close] = shutter;
+    // The sensor multiplies by the exposure time.
+    let sky = format!(
+        "LightSource \"infinite\" \"rgb L\" [1 1 1] \"float scale\" {}",
+        1.0 / (close - open)
+    );
+    let black = "Material \"diffuse\" \"rgb reflectance\" [0 0 0]";
+    view(before, shutter, 0, &format!("{sky}\n{black}\n{world}"))
+}
+
+/// A world seen by parallel rays, with paths of `depth` scattering events.
+fn view(before: &str, [open, close]: [f64; 2], depth: i32, world: &str) -> String {
     format!(
         "{before}\nCamera \"orthographic\" \"float screenwindow\" [-{SIDE} {SIDE} -{SIDE} {SIDE}] \"float shutteropen\" {open} \
-         \"float shutterclose\" {close}\n{}WorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1] \"float scale\" {}\n\
-         Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n{world}",
-        options(0),
-        // The sensor multiplies by the exposure time.
-        1.0 / (close - open)
+         \"float shutterclose\" {close}\n{}WorldBegin\n{world}",
+        options(depth)
     )
 }
 
@@ -152,4 +160,28 @@ fn rotation_goes_at_a_constant_rate() {
         "ActiveTransform EndTime\nRotate 120 0 0 1\nScale 2 2 2\nActiveTransform All\nScale 0.5 0.5 1\n{wedge}"
     );
     check_exposure("turning and growing", &scene("", [0.0, 1.0], &world), dark);
+}
+
+/// A shutter blade behind the camera moves between a distant lamp and the wall that it lights: shadow rays have the time of their path.
+#[test]
+fn shadows_move_with_what_casts_them() {
+    let blade = quad([-1.0, -9.0, -1.0], [10.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
+    let moved = "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n";
+    let wall = quad([-9.0, -9.0, 2.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]);
+    let object = format!("ObjectBegin \"o\"\n{blade}ObjectEnd\n{moved}ObjectInstance \"o\"");
+    for (name, world) in [("shape", format!("{moved}{blade}")), ("instance", object)] {
+        for shutter in [[0.0, 1.0], [0.25, 0.75]] {
+            let lit = format!(
+                "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"float scale\" {}\n\
+                 Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n{wall}{world}",
+                PI / (shutter[1] - shutter[0])
+            );
+            let text = view("", shutter, 1, &lit);
+            check_exposure(
+                &format!("shadow of a moving {name}, {shutter:?}"),
+                &text,
+                edge_passes(shutter),
+            );
+        }
+    }
 }

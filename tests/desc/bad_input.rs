@@ -103,7 +103,7 @@ fn syntax() {
 
 #[test]
 fn values() {
-    let cases: [Case; 28] = [
+    let cases: [Case; 34] = [
         (
             "WorldBegin Shape \"sphere\" \"float radius\" @\"big\"",
             "expected a finite number, found `\"big\"`",
@@ -196,9 +196,39 @@ fn values() {
             "",
         ),
         (
-            "Film \"rgb\" @\"float maxcomponentvalue\" 10 WorldBegin",
-            "`maxcomponentvalue` of film `rgb` is not supported",
+            "Film \"rgb\" \"float maxcomponentvalue\" @0 WorldBegin",
+            "`maxcomponentvalue` is 0, it must be positive",
             "",
+        ),
+        (
+            "Film \"rgb\" \"float whitebalance\" @12 WorldBegin",
+            "must be a temperature between 1000 and 1000000 K, or 0",
+            "",
+        ),
+        (
+            "Film \"rgb\" \"string sensor\" @\"nikon_d800\" WorldBegin",
+            "neither the name of a sensor nor a file",
+            "`nikon_d810`",
+        ),
+        (
+            "Film \"rgb\" \"string measure\" @\"flux\" WorldBegin",
+            "`radiance` or `irradiance`, not `flux`",
+            "",
+        ),
+        (
+            "Camera \"perspective\" \"integer blades\" @2 WorldBegin",
+            "`blades` is 2, it must be between 3 and 64, or 0",
+            "",
+        ),
+        (
+            "Camera \"perspective\" @\"integer bladerotation\" 10 WorldBegin",
+            "expected `float`",
+            "",
+        ),
+        (
+            "WorldBegin Material \"dielectric\" \"spectrum eta\" @\"sellmeier-N-BK8\"",
+            "neither the name of a spectrum nor a file",
+            "`sellmeier-N-BK7`",
         ),
         (
             "Sampler \"sobol\" \"integer pixelsamples\" @0 WorldBegin",
@@ -350,7 +380,7 @@ fn entities() {
         ("Integrator @\"bdpt\" WorldBegin", "not supported yet", ""),
         ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
         ("PixelFilter @\"gausian\" WorldBegin", "unknown filter", "`gaussian`"),
-        ("ColorSpace @\"rec2020\" WorldBegin", "not supported yet", ""),
+        ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
         (
             "WorldBegin Texture \"a\" \"spectrum\" @\"ptex\" \"string filename\" \"x\"",
             "spectrum texture `ptex` is not supported yet",
@@ -556,9 +586,9 @@ fn an_error_is_shown_with_its_line() {
 #[test]
 fn lenient_reading_turns_the_unknown_into_warnings() {
     let text = r#"
-        Film "gbuffer" "float maxcomponentvalue" 3
+        Film "gbuffer"
         Sampler "new" Integrator "bdpt" PixelFilter "new" Camera "spherical"
-        ColorSpace "rec2020"
+        ColorSpace "rec2021"
         WorldBegin
         Texture "a" "spectrum" "ptex" "string filename" "x"
         MakeNamedMedium "m" "string type" "homogeneous" MediumInterface "m"

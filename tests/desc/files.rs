@@ -7,7 +7,7 @@ use std::path::Path;
 use flate2::{Compression, write::GzEncoder};
 use glam::DVec3;
 use lucerna::Error;
-use lucerna::desc::{MaterialKind, SceneDesc, ShapeKind, SpectrumValue, Textured, load};
+use lucerna::desc::{MaterialKind, SceneDesc, SensorDesc, ShapeKind, SpectrumValue, Textured, load};
 use tempfile::TempDir;
 
 use crate::STRICT;
@@ -222,4 +222,27 @@ fn what_is_no_scene_file_is_refused() {
     };
     assert!(errors[0].message.contains("UTF-16"), "{}", errors[0]);
     assert!(matches!(open(&files, "c.pbrt.gz"), Err(Error::Io { .. })));
+}
+
+#[test]
+fn sensors_may_be_files() {
+    let film = "Film \"rgb\" \"string sensor\" \"curves.csv\" WorldBegin Shape \"sphere\"";
+    let curves = "# wavelength, r, g, b\n400, 0, 0.1, 0.9\n500 0 1 .2\n\n600,1,0.3,0 # red\n";
+    let read = scene(&[("a.pbrt", film), ("curves.csv", curves)]);
+    let rows = vec![[400.0, 0.0, 0.1, 0.9], [500.0, 0.0, 1.0, 0.2], [600.0, 1.0, 0.3, 0.0]];
+    assert_eq!(read.views[0].film.sensor, SensorDesc::Curves(rows));
+    let plain = scene(&[("a.pbrt", &film.replace("curves.csv", "sony_ilce_9"))]);
+    assert_eq!(plain.views[0].film.sensor, SensorDesc::Named("sony_ilce_9".to_owned()));
+    for (curves, problem) in [
+        (
+            "400 0 0 1\n500 0 x 1",
+            "line 2 has something that is not a finite number",
+        ),
+        ("400 0 0 1\n500 0 1", "line 2 must have four numbers"),
+        ("400 0 0 1\n400 0 1 0", "line 2 must have a greater wavelength"),
+        ("400 0 0 1", "two lines at least"),
+    ] {
+        let (_, line, message) = error(&[("a.pbrt", film), ("curves.csv", curves)]);
+        assert!(line == 1 && message.contains(problem), "{curves}: {message}");
+    }
 }

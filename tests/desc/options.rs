@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    CameraKind, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc,
-    LightSamplerKind, MotionDesc, PathDesc, PixelRect, SAMPLERS, SamplerKind, Strategy, Termination,
+    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc,
+    IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect, SAMPLERS, SamplerKind,
+    SensorDesc, SpectrumValue, Strategy, Termination,
 };
 use lucerna::sampling::Strata;
 
@@ -275,4 +276,49 @@ fn a_file_without_options_has_those_of_the_tables() {
     let named = scene("Sampler \"zsobol\" Integrator \"path\"\nWorldBegin");
     assert_eq!(plain.integrator, named.integrator);
     assert_eq!(plain.views[0].sampler, named.views[0].sampler);
+}
+
+#[test]
+fn films_know_their_sensor_and_lenses_their_blades() {
+    let read = scene(
+        r#"
+        ColorSpace "rec2020"
+        Film "rgb" "string sensor" "nikon_d850" "float whitebalance" 5000 "float maxcomponentvalue" 10 "string measure" "irradiance"
+        ColorSpace "srgb"
+        Camera "perspective" "integer blades" 6 "float bladerotation" 15
+        WorldBegin
+        AttributeBegin
+        ColorSpace "dci-p3"
+        Attribute "light" "rgb L" [1 2 3]
+        LightSource "point" "rgb I" [3 2 1]
+        ColorSpace "srgb"
+        LightSource "infinite"
+        AttributeEnd
+        LightSource "point" "rgb I" [3 2 1]
+        "#,
+    );
+    let view = &read.views[0];
+    assert_eq!(view.film.sensor, SensorDesc::Named("nikon_d850".to_owned()));
+    assert_eq!((view.film.white_balance, view.film.max_component), (Some(5000.0), 10.0));
+    assert_eq!(
+        (view.film.measure, view.film.color_space),
+        (MeasureDesc::Irradiance, ColorSpace::Rec2020)
+    );
+    let blades = ApertureDesc::Polygon {
+        blades: 6,
+        rotation: 15.0,
+    };
+    assert_eq!(view.camera.aperture, blades);
+    // A colour is in the space at its own directive, also where `Attribute` gives it.
+    let colors: Vec<SpectrumValue> = read
+        .lights
+        .iter()
+        .filter_map(|light| light.spectrum.as_ref().map(|spectrum| spectrum.value.clone()))
+        .collect();
+    let expected = [
+        ([3.0, 2.0, 1.0], ColorSpace::DciP3),
+        ([1.0, 2.0, 3.0], ColorSpace::DciP3),
+        ([3.0, 2.0, 1.0], ColorSpace::Srgb),
+    ];
+    assert_eq!(colors, expected.map(|(rgb, space)| SpectrumValue::Rgb(rgb, space)));
 }

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat4, DVec3, Vec2, Vec3};
 use lucerna::desc::{
-    ConductorDesc, DistributionDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc, ShapeDesc,
-    ShapeKind, SpectrumDesc, SpectrumValue, Textured, load,
+    ColorSpace, ConductorDesc, DistributionDesc, LightKind, MaterialId, MaterialKind, ObjectId, RoughnessDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, SpectrumValue, Textured, load,
 };
 
 use crate::{STRICT, shared, world};
@@ -35,7 +35,7 @@ fn attributes_are_restored() {
     let light = inner.area_light.as_ref().expect("a light");
     assert_eq!(
         light.l.as_ref().map(|l| &l.value),
-        Some(&SpectrumValue::Rgb([1.0, 2.0, 3.0]))
+        Some(&SpectrumValue::Rgb([1.0, 2.0, 3.0], ColorSpace::Srgb))
     );
     assert_eq!((light.scale, light.power, light.two_sided), (2.0, Some(60.0), true));
     assert_eq!(place(outer), DVec3::ZERO);
@@ -159,7 +159,10 @@ fn materials_have_the_parameters_of_pbrt() {
     };
     assert_eq!(
         (value(r), roughness.clone()),
-        (&SpectrumValue::Rgb([0.1, 0.2, 0.3]), rough(0.5, 0.25, true))
+        (
+            &SpectrumValue::Rgb([0.1, 0.2, 0.3], ColorSpace::Srgb),
+            rough(0.5, 0.25, true)
+        )
     );
     let eta = |i: usize| match kinds[i] {
         MaterialKind::Dielectric { eta, roughness, .. } => (eta.value.clone(), roughness.u.clone()),
@@ -219,7 +222,10 @@ fn lights_have_the_parameters_of_pbrt() {
     let value = |light: &lucerna::desc::LightDesc| light.spectrum.as_ref().map(|s| s.value.clone());
     let from = DVec3::new(4.0, 5.0, 6.0);
     assert_eq!(point.kind, LightKind::Point { from });
-    assert_eq!(value(point), Some(SpectrumValue::Rgb([1.0, 2.0, 3.0])));
+    assert_eq!(
+        value(point),
+        Some(SpectrumValue::Rgb([1.0, 2.0, 3.0], ColorSpace::Srgb))
+    );
     assert_eq!((point.scale, point.photometric), (1.0, Some(100.0)));
     let (from, to) = (DVec3::ZERO, DVec3::NEG_Y);
     assert_eq!(distant.kind, LightKind::Distant { from, to });
@@ -292,7 +298,7 @@ fn attribute_sets_defaults_for_what_follows() {
     let MaterialKind::Diffuse { reflectance, .. } = &scene.materials[1].kind else {
         panic!()
     };
-    assert_eq!(*value(reflectance), SpectrumValue::Rgb([0.1; 3]));
+    assert_eq!(*value(reflectance), SpectrumValue::Rgb([0.1; 3], ColorSpace::Srgb));
     // Nothing rough follows.
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
 }
@@ -372,7 +378,7 @@ fn the_cornell_box_is_read() {
         panic!("{} lights", lights.len())
     };
     let l = light.area_light.as_ref().and_then(|a| a.l.as_ref()).map(|l| &l.value);
-    assert_eq!(l, Some(&SpectrumValue::Rgb([17.0, 12.0, 4.0])));
+    assert_eq!(l, Some(&SpectrumValue::Rgb([17.0, 12.0, 4.0], ColorSpace::Srgb)));
     assert_eq!(
         scene.materials[light.material.0 as usize].name.as_deref(),
         Some("Light")

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2};
 use lucerna::camera::{Camera, CameraSample, CameraSpec, Projection};
+use lucerna::desc::{ApertureDesc, MeasureDesc};
 use lucerna::film::{FilterKind, PixelFilter};
 use lucerna::math::{AnimatedTransform, DAffine3};
 
@@ -23,6 +24,8 @@ fn spec(projection: Projection) -> CameraSpec {
         resolution: [30, 20],
         lens_radius: LENS,
         focal_distance: FOCUS,
+        aperture: ApertureDesc::Round,
+        measure: MeasureDesc::Radiance,
         shutter: [0.25, 0.75],
         world_from_camera: AnimatedTransform::fixed(placement()).expect("invertible"),
     }

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use lucerna::sampling::{PiecewiseConstant1D, SolidAnglePdf, warp};
 
 /// How many chi-squared tests of warps there are here.
-const WARPS: usize = 13;
+const WARPS: usize = 17;
 
 fn first_two(u: [f32; 4]) -> Vec2 {
     Vec2::new(u[0], u[1])
@@ -55,6 +55,31 @@ fn directions_have_their_density() {
         let report = sphere.run_directions(|u| Some(sample(first_two(u))), |w| pdf(w).0);
         report.assert_ok(name);
         assert!((report.mass - 1.0).abs() < 1e-5, "{name}: {}", report.mass);
+    }
+}
+
+#[test]
+fn polygons_have_their_density() {
+    for corners in [3, 5, 6, 64] {
+        let sector = 2.0 * PI / f64::from(corners);
+        // The squared distance of the side in a direction, from the middle of the nearest side on.
+        let rim_squared = |phi: f64| {
+            let from_middle = phi.rem_euclid(sector) - 0.5 * sector;
+            ((0.5 * sector).cos() / from_middle.cos()).powi(2)
+        };
+        let report = Chi2::new([[-PI, PI], [0.0, 1.0]]).of(WARPS).run(
+            |u| {
+                let p = warp::sample_regular_polygon(first_two(u), corners).as_dvec2();
+                let phi = p.y.atan2(p.x);
+                let part = p.length_squared() / rim_squared(phi);
+                assert!(part < 1.0 + 1e-6);
+                Some([phi, part.min(1.0)])
+            },
+            // The area element is half of the squared distance times d phi d part.
+            |[phi, _]| 0.5 * rim_squared(phi) * f64::from(warp::regular_polygon_pdf(corners)),
+        );
+        report.assert_ok(&format!("polygon of {corners}"));
+        assert!((report.mass - 1.0).abs() < 1e-4, "{}", report.mass);
     }
 }
 
@@ -128,6 +153,15 @@ fn warps_invert() {
         let cosine = warp::invert_cosine_hemisphere(warp::sample_cosine_hemisphere(u));
         for (name, back) in [("disk", disk), ("triangle", triangle), ("cosine", cosine)] {
             assert!(apart(u, back, false) < TOLERANCE, "{name}: {u} and {back}");
+        }
+        for corners in [3, 5, 6, 64] {
+            let back = warp::invert_regular_polygon(warp::sample_regular_polygon(u, corners), corners);
+            // On the ray through a corner the side is a matter of rounding; what is lost is a number's distance from the centre or from
+            // the side, squared: some 1e-7 of the first becomes its root.
+            let edge = (u.x * corners as f32).fract();
+            if edge > 1e-3 && edge < 0.999 && u.y > 1e-3 && u.y < 0.999 {
+                assert!(apart(u, back, false) < 1e-4, "polygon of {corners}: {u} and {back}");
+            }
         }
         let directions = [
             (

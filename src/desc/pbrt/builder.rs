@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::files::Context;
 use super::options::Options;
 use super::params::Param;
-use super::reader::{ParamReader, unknown_type};
+use super::reader::ParamReader;
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
 use super::{light, material, shape, texture};
-use crate::desc::{MotionDesc, TextureClass, Textured};
+use crate::desc::{ColorSpace, MotionDesc, TextureClass, Textured};
 use crate::error::Span;
 
 pub(super) use super::options::OptionKind;
@@ -113,16 +113,17 @@ impl Builder {
     }
 
     pub fn color_space(&mut self, name: &str, span: Span) {
-        let class = (&["srgb"][..], &["dci-p3", "rec2020", "aces2065-1"][..]);
-        if name != "srgb" {
-            unknown_type(
-                &mut self.context.report,
-                "color space",
-                name,
-                span,
-                class,
-                "sRGB is used",
-            );
+        match ColorSpace::from_name(name) {
+            Some(space) => {
+                self.state.color_space = space;
+                self.context.color_space = space;
+            }
+            None => {
+                let known = ColorSpace::ALL.map(ColorSpace::name);
+                let message = format!("unknown color space `{name}`");
+                let report = &mut self.context.report;
+                report.unknown(span, message, "it is ignored", name, &known);
+            }
         }
     }
 
@@ -146,10 +147,15 @@ impl Builder {
         });
     }
 
+    fn set_state(&mut self, state: GraphicsState) {
+        self.context.color_space = state.color_space;
+        self.state = state;
+    }
+
     /// Goes back to the last saved state if it was saved for the same reason; otherwise complains.
     fn restore(&mut self, why: Block, directive: &str, span: Span) {
         match self.saved.pop() {
-            Some(saved) if saved.why == why => self.state = saved.state,
+            Some(saved) if saved.why == why => self.set_state(saved.state),
             other => {
                 let open = match other.as_ref().map(|s| s.why) {
                     Some(Block::Attribute) => "what was begun last is `AttributeBegin`",
@@ -330,6 +336,7 @@ impl Builder {
             of_target.retain(|p| p.name != param.name);
             of_target.push(Param {
                 default: Some(number),
+                color_space: Some(self.context.color_space),
                 ..param
             });
         }
@@ -347,7 +354,7 @@ impl Builder {
             if !is_import {
                 self.unclosed(&saved);
             }
-            self.state = saved.state;
+            self.set_state(saved.state);
             if is_import {
                 break;
             }

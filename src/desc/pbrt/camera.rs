@@ -2,7 +2,7 @@
 
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::{CameraDesc, CameraKind, MotionDesc};
+use crate::desc::{ApertureDesc, CameraDesc, CameraKind, MotionDesc};
 use crate::error::Span;
 
 const KNOWN: [&str; 2] = ["perspective", "orthographic"];
@@ -27,6 +27,7 @@ pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
         frame_aspect: None,
         lens_radius: 0.0,
         focal_distance: 1e6,
+        aperture: ApertureDesc::Round,
         shutter: [0.0, 1.0],
         world_from_camera,
     }
@@ -61,6 +62,7 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_camera: M
             .then(|| reader.positive("frameaspectratio", 1.0)),
         lens_radius: reader.not_negative("lensradius", 0.0),
         focal_distance: reader.positive("focaldistance", default.focal_distance),
+        aperture: aperture(&mut reader),
         shutter: shutter(&mut reader),
         world_from_camera,
     };
@@ -78,6 +80,16 @@ fn screen_window(reader: &mut ParamReader<'_>) -> Option<[f64; 4]> {
         return None;
     }
     Some(window)
+}
+
+fn aperture(reader: &mut ParamReader<'_>) -> ApertureDesc {
+    let valid = |v: i32| v == 0 || (3..=64).contains(&v);
+    let blades = reader.integer_in("blades", 0, valid, "between 3 and 64, or 0 for a round lens");
+    let rotation = reader.float("bladerotation").unwrap_or(0.0);
+    match blades.unsigned_abs() {
+        0 => ApertureDesc::Round,
+        blades => ApertureDesc::Polygon { blades, rotation },
+    }
 }
 
 fn shutter(reader: &mut ParamReader<'_>) -> [f64; 2] {

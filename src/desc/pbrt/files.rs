@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::images::PendingImages;
 use super::report::Report;
 use super::texture_names::Textures;
-use crate::desc::{ParseOptions, bytes};
+use crate::desc::{ColorSpace, ParseOptions, bytes};
 use crate::error::Span;
 
 /// What every part of the reader shares: the report and the files.
@@ -15,6 +15,8 @@ pub(super) struct Context {
     pub report: Report,
     /// The textures so far.
     pub textures: Textures,
+    /// What `rgb` parameters are in.
+    pub color_space: ColorSpace,
     /// The image files named so far.
     pub images: PendingImages,
     /// Where the main file is.
@@ -43,6 +45,7 @@ impl Context {
         Self {
             report: Report::new(options),
             textures: Textures::default(),
+            color_space: ColorSpace::default(),
             images: PendingImages::default(),
             directory: directory.to_owned(),
             hasher: blake3::Hasher::new(),

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::{CropDesc, FilmDesc, FilterDesc, FilterKind, PixelRect};
+use super::sensor;
+use crate::desc::{ColorSpace, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect, SensorDesc};
 use crate::error::Span;
 
 /// The film of a file without one.
@@ -15,6 +16,11 @@ pub(super) fn default_film(span: Span) -> FilmDesc {
         filename: None,
         iso: 100.0,
         exposure_time: 1.0,
+        sensor: SensorDesc::default(),
+        white_balance: None,
+        max_component: f64::INFINITY,
+        color_space: ColorSpace::default(),
+        measure: MeasureDesc::default(),
         span,
     }
 }
@@ -38,30 +44,43 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
         filename: reader.string("filename").map(|(name, _)| PathBuf::from(name)),
         iso: reader.positive("iso", 100.0),
         exposure_time: 1.0,
+        sensor: sensor::read(&mut reader),
+        white_balance: white_balance(&mut reader),
+        max_component: reader.positive("maxcomponentvalue", f64::INFINITY),
+        color_space: reader.context.color_space,
+        measure: measure(&mut reader),
         span,
     };
-    sensor(&mut reader);
     reader.inert(&[
         ("diagonal", "it matters to realistic cameras only"),
         ("savefp16", "images are saved with 32 bits"),
     ]);
-    reader.unsupported(&["maxcomponentvalue"]);
     reader.finish();
     film
 }
 
-fn sensor(reader: &mut ParamReader<'_>) {
-    if let Some((name, span)) = reader.string("sensor")
-        && name != "cie1931"
-    {
-        let message = format!("the sensor `{name}` is not supported yet, only `cie1931`");
-        reader.report().unsupported(span, message, "`cie1931` is used");
-    }
-    let temperature = reader.not_negative("whitebalance", 0.0);
-    if temperature != 0.0 {
-        let span = reader.span_of("whitebalance");
-        let message = "white balancing is not supported yet";
-        reader.report().unsupported(span, message, "it is left out");
+/// As in pbrt-v4, 0 is none. Below 1000 K nothing glows that could be white.
+fn white_balance(reader: &mut ParamReader<'_>) -> Option<f64> {
+    let valid = |v: f64| v == 0.0 || (1000.0..=1e6).contains(&v);
+    let range = "a temperature between 1000 and 1000000 K, or 0 for none";
+    let kelvin = reader.float_in("whitebalance", 0.0, valid, range);
+    (kelvin != 0.0).then_some(kelvin)
+}
+
+fn measure(reader: &mut ParamReader<'_>) -> MeasureDesc {
+    let Some((name, span)) = reader.string("measure") else {
+        return MeasureDesc::default();
+    };
+    match name.as_str() {
+        "radiance" => MeasureDesc::Radiance,
+        "irradiance" => MeasureDesc::Irradiance,
+        _ => {
+            let known = ["radiance", "irradiance"];
+            let message = format!("a film measures `radiance` or `irradiance`, not `{name}`");
+            let instead = "it measures radiance";
+            reader.report().unknown(span, message, instead, &name, &known);
+            MeasureDesc::default()
+        }
     }
 }
 

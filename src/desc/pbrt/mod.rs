@@ -22,6 +22,7 @@ mod params;
 mod reader;
 mod report;
 mod sampler;
+mod sensor;
 mod shape;
 mod spectrum;
 mod state;

@@ -4,6 +4,7 @@ use super::directives::is_directive;
 use super::report::Report;
 use super::suggest;
 use super::tokens::{Lexer, Number, Token, TokenKind, unquote};
+use crate::desc::ColorSpace;
 use crate::error::Span;
 
 /// The types of pbrt-v4.
@@ -63,6 +64,8 @@ pub(super) struct Param {
     pub values: Values,
     /// If it stems from an `Attribute` directive, where it may go unused: its number.
     pub default: Option<usize>,
+    /// The colour space that was in force at the `Attribute` directive; else the one at the entity holds.
+    pub color_space: Option<ColorSpace>,
 }
 
 /// The values of a parameter.
@@ -95,6 +98,7 @@ pub(super) fn read_params(lexer: &mut Lexer, report: &mut Report) -> Vec<Param> 
             },
             values,
             default: None,
+            color_space: None,
         };
         if params.iter().any(|p| p.name == param.name && p.kind == param.kind) {
             report.error(

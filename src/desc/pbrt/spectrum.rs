@@ -5,6 +5,7 @@ use super::reader::ParamReader;
 use super::suggest;
 use crate::desc::{SpectrumDesc, SpectrumValue};
 use crate::error::Span;
+use crate::spectrum::named_spectra;
 
 /// What a spectrum is for, which says what values it may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,47 +34,6 @@ impl Use {
     }
 }
 
-/// The names that pbrt-v4 knows.
-const NAMES: [&str; 37] = [
-    "glass-BK7",
-    "glass-BAF10",
-    "glass-FK51A",
-    "glass-LASF9",
-    "glass-F5",
-    "glass-F10",
-    "glass-F11",
-    "metal-Ag-eta",
-    "metal-Ag-k",
-    "metal-Al-eta",
-    "metal-Al-k",
-    "metal-Au-eta",
-    "metal-Au-k",
-    "metal-Cu-eta",
-    "metal-Cu-k",
-    "metal-CuZn-eta",
-    "metal-CuZn-k",
-    "metal-MgO-eta",
-    "metal-MgO-k",
-    "metal-TiO2-eta",
-    "metal-TiO2-k",
-    "stdillum-A",
-    "stdillum-D50",
-    "stdillum-D65",
-    "stdillum-F1",
-    "stdillum-F2",
-    "stdillum-F3",
-    "stdillum-F4",
-    "stdillum-F5",
-    "stdillum-F6",
-    "stdillum-F7",
-    "stdillum-F8",
-    "stdillum-F9",
-    "stdillum-F10",
-    "stdillum-F11",
-    "stdillum-F12",
-    "illum-acesD60",
-];
-
 impl ParamReader<'_> {
     /// A spectrum, if the parameter is there.
     pub fn spectrum(&mut self, name: &'static str, usage: Use) -> Option<SpectrumDesc> {
@@ -99,7 +59,8 @@ impl ParamReader<'_> {
             (ParamType::Rgb, Values::Numbers(v)) => {
                 self.check_count(param, v.len(), 3)?;
                 self.check_values(param, v, usage, 1)?;
-                SpectrumValue::Rgb([v[0] as f32, v[1] as f32, v[2] as f32])
+                let space = param.color_space.unwrap_or(self.context.color_space);
+                SpectrumValue::Rgb([v[0] as f32, v[1] as f32, v[2] as f32], space)
             }
             (ParamType::Blackbody, Values::Numbers(v)) => {
                 self.check_count(param, v.len(), 1)?;
@@ -126,13 +87,14 @@ impl ParamReader<'_> {
     fn named(&mut self, param: &Param, strings: &[String], usage: Use) -> Option<SpectrumValue> {
         self.check_count(param, strings.len(), 1)?;
         let name = &strings[0];
-        if NAMES.contains(&name.as_str()) {
+        if named_spectra().any(|known| known == name) {
             return Some(SpectrumValue::Named(name.clone()));
         }
         let span = value_span(self.report(), param, 0);
         let path = self.context.resolve(name, span);
         if !path.exists() {
-            let help = suggest::closest(name, &NAMES).map(|n| format!("did you mean `{n}`?"));
+            let known: Vec<&str> = named_spectra().collect();
+            let help = suggest::closest(name, &known).map(|n| format!("did you mean `{n}`?"));
             let message = format!("`{name}` is neither the name of a spectrum nor a file");
             self.report().error_with_help(span, message, help);
             return None;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat4, DVec3};
 
 use super::params::Param;
-use crate::desc::{AreaLightDesc, MotionDesc};
+use crate::desc::{AreaLightDesc, ColorSpace, MotionDesc};
 use crate::error::Span;
 
 /// What `AttributeBegin` saves and `AttributeEnd` restores.
@@ -16,6 +16,8 @@ pub(super) struct GraphicsState {
     /// Which of them transform directives change: at the start, at the end.
     pub active: [bool; 2],
     pub reverse_orientation: bool,
+    /// What `rgb` parameters are in.
+    pub color_space: ColorSpace,
     /// The current material, an index of a slot.
     pub material: usize,
     pub area_light: Option<Arc<AreaLightDesc>>,
@@ -56,6 +58,7 @@ impl GraphicsState {
             ctm: MotionDesc::IDENTITY,
             active: [true; 2],
             reverse_orientation: false,
+            color_space: ColorSpace::default(),
             material: 0,
             area_light: None,
             defaults: Defaults::default(),

@@ -189,7 +189,7 @@ impl ParamReader<'_> {
         let eta = self
             .spectrum_or_float(parameter.name, Use::Ior)
             .unwrap_or_else(|| constant(default, span));
-        if let SpectrumValue::Rgb(_) | SpectrumValue::Blackbody(_) = eta.value {
+        if let SpectrumValue::Rgb(..) | SpectrumValue::Blackbody(_) = eta.value {
             let message = "the index of refraction of a dielectric is a number or a spectrum, not a colour";
             self.report().error(eta.span, message);
         }

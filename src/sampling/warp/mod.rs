@@ -20,8 +20,8 @@ pub use direction::{
 pub use interval::{invert_linear, invert_tent, linear_pdf, sample_linear, sample_tent, tent_pdf};
 pub use octahedral::{equal_area_square_to_sphere, invert_equal_area_square_to_sphere};
 pub use plane::{
-    invert_uniform_disk, invert_uniform_triangle, sample_uniform_disk, sample_uniform_triangle, uniform_disk_pdf,
-    uniform_triangle_pdf,
+    invert_regular_polygon, invert_uniform_disk, invert_uniform_triangle, regular_polygon_pdf, sample_regular_polygon,
+    sample_uniform_disk, sample_uniform_triangle, uniform_disk_pdf, uniform_triangle_pdf,
 };
 
 /// Rounds what should be in [0, 1) into it.

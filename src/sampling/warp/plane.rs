@@ -1,6 +1,6 @@
-//! The disk and the triangle.
+//! The disk, the triangle and regular polygons.
 
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
 
 use glam::{Vec2, Vec3};
 
@@ -74,4 +74,39 @@ pub fn invert_uniform_triangle(b: Vec3) -> Vec2 {
         Vec2::new(2.0 * b.x, b.x + b.y)
     };
     Vec2::new(into_unit(u.x), into_unit(u.y))
+}
+
+/// A point of the regular polygon with `corners` corners (3 or more) on the unit circle, the first at (1, 0), uniform by area. The
+/// first number chooses the triangle between the centre and a side, then goes on as good as new.
+#[inline]
+pub fn sample_regular_polygon(u: Vec2, corners: u32) -> Vec2 {
+    let scaled = u.x * corners as f32;
+    let side = (scaled as u32).min(corners - 1);
+    let b = sample_uniform_triangle(Vec2::new(into_unit(scaled - side as f32), u.y));
+    let [first, second] = side_of_polygon(side, corners);
+    first * b.x + second * b.y
+}
+
+/// The density of [`sample_regular_polygon`] by area, 1 / area inside the polygon.
+#[inline]
+pub fn regular_polygon_pdf(corners: u32) -> f32 {
+    let corners = corners as f32;
+    1.0 / (0.5 * corners * (TAU / corners).sin())
+}
+
+/// The numbers that [`sample_regular_polygon`] maps to `p`.
+pub fn invert_regular_polygon(p: Vec2, corners: u32) -> Vec2 {
+    let turns = (p.y.atan2(p.x) / TAU).rem_euclid(1.0);
+    let side = ((turns * corners as f32) as u32).min(corners - 1);
+    let [first, second] = side_of_polygon(side, corners);
+    let area = first.perp_dot(second);
+    let (b0, b1) = (p.perp_dot(second) / area, first.perp_dot(p) / area);
+    let u = invert_uniform_triangle(Vec3::new(b0, b1, 1.0 - b0 - b1));
+    Vec2::new(into_unit((side as f32 + u.x) / corners as f32), u.y)
+}
+
+/// The corners at both ends of a side.
+#[inline]
+fn side_of_polygon(side: u32, corners: u32) -> [Vec2; 2] {
+    [side, side + 1].map(|corner| Vec2::from_angle(TAU * (corner as f32 / corners as f32)))
 }
