@@ -14,9 +14,12 @@ pub(super) struct Named {
     pub outside: Outside,
 }
 
+/// Wavelengths and values.
+type Points = Vec<(f32, f32)>;
+
 static NAMED: LazyLock<Vec<Named>> = LazyLock::new(|| {
     let valid = "the table that is compiled in is valid";
-    let mut tables: Vec<(&str, Vec<(f32, f32)>)> = Vec::new();
+    let mut tables: Vec<(&str, Points)> = Vec::new();
     for row in include_str!("data/pbrt_named_spectra.csv").lines().skip(1) {
         let mut fields = row.split(',');
         let name = fields.next().expect(valid);
@@ -33,7 +36,7 @@ static NAMED: LazyLock<Vec<Named>> = LazyLock::new(|| {
 /// The metals that pbrt-v4 does not have.
 fn extra_metals() -> Vec<Named> {
     let valid = "the table that is compiled in is valid";
-    let mut metals: Vec<(&str, [Vec<(f32, f32)>; 2])> = Vec::new();
+    let mut metals: Vec<(&str, [Points; 2])> = Vec::new();
     for row in include_str!("data/metals_n_k.csv").lines().skip(1) {
         let (metal, numbers) = row.split_once(',').expect(valid);
         let numbers: Vec<f32> = numbers.split(',').map(|field| field.parse().expect(valid)).collect();
@@ -46,7 +49,7 @@ fn extra_metals() -> Vec<Named> {
             }
         }
     }
-    let part = |metal: &str, part: &str, points: Vec<(f32, f32)>| Named {
+    let part = |metal: &str, part: &str, points: Points| Named {
         name: format!("metal-{metal}-{part}").into(),
         points: points.into(),
         outside: Outside::Constant,
@@ -79,7 +82,7 @@ fn sellmeier_glasses() -> impl Iterator<Item = Named> {
 
 /// Refractive indices are as tabulated. Illuminants are scaled to the luminance of a constant 1: the integral with ȳ is
 /// [`cie::y_integral`].
-fn finish(name: &'static str, mut points: Vec<(f32, f32)>) -> Named {
+fn finish(name: &'static str, mut points: Points) -> Named {
     let is_index = name.starts_with("glass-") || name.starts_with("metal-");
     let outside = if is_index { Outside::Constant } else { Outside::Zero };
     if !is_index {

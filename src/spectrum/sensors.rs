@@ -30,9 +30,12 @@ impl ResponseTable {
 /// The message of a table that cannot be read, which no input can cause.
 const VALID: &str = "the table that is compiled in is valid";
 
+/// A tabulated function and its key.
+type Function = (&'static str, Vec<(f32, f32)>);
+
 /// Rows of (first fields, then wavelength and value), as one tabulated function for each run of equal first fields.
-fn functions(table: &'static str) -> Vec<(&'static str, Vec<(f32, f32)>)> {
-    let mut functions: Vec<(&str, Vec<(f32, f32)>)> = Vec::new();
+fn functions(table: &'static str) -> Vec<Function> {
+    let mut functions: Vec<Function> = Vec::new();
     for row in table.lines().skip(1) {
         let (rest, value) = row.rsplit_once(',').expect(VALID);
         let (key, nm) = rest.rsplit_once(',').expect(VALID);
@@ -46,8 +49,7 @@ fn functions(table: &'static str) -> Vec<(&'static str, Vec<(f32, f32)>)> {
 }
 
 /// By name and channel: `canon_eos_5d,r`.
-static SENSORS: LazyLock<Vec<(&str, Vec<(f32, f32)>)>> =
-    LazyLock::new(|| functions(include_str!("data/camera_sensors.csv")));
+static SENSORS: LazyLock<Vec<Function>> = LazyLock::new(|| functions(include_str!("data/camera_sensors.csv")));
 
 /// The cameras that a film may be: pbrt-v4's names of sensors, without `cie1931`.
 pub fn sensor_names() -> impl Iterator<Item = &'static str> {
