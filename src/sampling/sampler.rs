@@ -182,8 +182,18 @@ impl<const N: usize> Kernel for DrawLanes<'_, N> {
 fn draw<const N: usize>(streams: &[SampleStream; N], group: u32) -> [[f32; N]; 4] {
     let (keys, reversed_indices) = (streams.map(|s| s.key), streams.map(|s| s.reversed_index));
     match streams[0].plan {
-        Plan::Independent => each_lane(keys, reversed_indices, |key, index| independent(key, index, group)),
-        Plan::Sobol => each_lane(keys, reversed_indices, |key, index| sobol(key, index, group)),
+        Plan::Independent => each_lane(
+            keys,
+            reversed_indices,
+            #[inline(always)]
+            |key, index| independent(key, index, group),
+        ),
+        Plan::Sobol => each_lane(
+            keys,
+            reversed_indices,
+            #[inline(always)]
+            |key, index| sobol(key, index, group),
+        ),
         Plan::Stratified(strata) => stratified::draw(keys, reversed_indices.map(u32::reverse_bits), strata, group),
         Plan::Halton(samples) => halton::draw(keys, reversed_indices.map(u32::reverse_bits), samples, group),
         Plan::ZSobol(first) => {
