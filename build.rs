@@ -15,9 +15,8 @@ mod spectrum {
     mod description;
     mod named;
     mod rgb2spec;
-    #[path = "../../build/rgb_table.rs"]
-    pub mod rgb_table;
     mod sampled;
+    pub mod table_builder;
     mod wavelengths;
 
     pub use color_space::ColorSpace;
@@ -28,7 +27,7 @@ mod spectrum {
 fn main() {
     for source in [
         "build.rs",
-        "build/rgb_table.rs",
+        "src/spectrum/table_builder.rs",
         "src/spectrum/cie.rs",
         "src/spectrum/color_space.rs",
         "src/spectrum/data",
@@ -55,7 +54,7 @@ fn main() {
 fn write_table() {
     let directory = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     let start = Instant::now();
-    let bytes: Vec<u8> = spectrum::rgb_table::coefficients()
+    let bytes: Vec<u8> = spectrum::table_builder::coefficients()
         .iter()
         .flat_map(|c| c.to_le_bytes())
         .collect();

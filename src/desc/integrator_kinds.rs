@@ -30,14 +30,7 @@ pub static INTEGRATORS: [IntegratorEntry; 2] = [
     IntegratorEntry {
         name: "kajiya",
         doc: "The rendering equation taken literally: the oracle that others are tested against",
-        parameters: &[
-            &MAX_DEPTH,
-            &LIGHT_SAMPLER,
-            &TERMINATION,
-            &ALPHA,
-            &BRANCHING,
-            &DISTRIBUTION,
-        ],
+        parameters: &[&MAX_DEPTH, &TERMINATION, &ALPHA, &BRANCHING, &DISTRIBUTION],
     },
 ];
 

@@ -1,4 +1,4 @@
-//! Reflectances of sRGB colours by interpolation in the table that the build script made (`build/rgb_table.rs`, which says how it
+//! Reflectances of sRGB colours by interpolation in the table that the build script made (`table_builder.rs`, which says how it
 //! is laid out).
 
 use std::sync::LazyLock;

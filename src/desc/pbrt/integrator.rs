@@ -47,11 +47,12 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
         }
     }
     let max_depth = u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok();
-    let light_sampler = light_sampler(&mut reader);
-    let kind = if kind == "kajiya" {
-        IntegratorKind::Kajiya(kajiya(&mut reader, max_depth))
+    // The oracle chooses no lights.
+    let (light_sampler, kind) = if kind == "kajiya" {
+        let kajiya = kajiya(&mut reader, max_depth);
+        (LightSamplerKind::default(), IntegratorKind::Kajiya(kajiya))
     } else {
-        IntegratorKind::Path(path(&mut reader))
+        (light_sampler(&mut reader), IntegratorKind::Path(path(&mut reader)))
     };
     reader.finish();
     IntegratorDesc {

@@ -1,4 +1,4 @@
-//! The table of sigmoid polynomials over sRGB: Jakob and Hanika 2019, section 4.3.
+//! Compiled into the build script only. The table of sigmoid polynomials over sRGB: Jakob and Hanika 2019, section 4.3.
 //!
 //! Axes: which component is the largest, its value (closer nodes near 0 and 1), and the other two over it. The layout, innermost
 //! first: three coefficients, the next component, the one after, the largest, which one that is.
