@@ -168,7 +168,13 @@ impl TriangleMesh {
         if fraction == 0.0 {
             return now;
         }
-        let next = corners.map(|v| self.positions[step + 1][v as usize]);
+        self.moved(triangle, step, fraction, now)
+    }
+
+    /// The corners of a triangle, which at a time step are `now`, at a fraction of the way to the next.
+    #[inline(never)]
+    fn moved(&self, triangle: usize, step: usize, fraction: f32, now: [Vec3; 3]) -> [Vec3; 3] {
+        let next = self.indices[triangle].map(|v| self.positions[step + 1][v as usize]);
         std::array::from_fn(|i| now[i] * (1.0 - fraction) + next[i] * fraction)
     }
 
