@@ -59,7 +59,7 @@ impl Estimator for KajiyaIntegrator {
             return;
         }
         let lambda = &mut stage.slots[lane.slot as usize].lambda;
-        let bsdf = stage.scene.material(si.hit.geometry).bsdf(&si, lambda);
+        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, lambda);
         let alpha = match self.termination {
             Termination::Constant(alpha) => alpha,
             Termination::Albedo => (1.0 - albedo(&bsdf, si.wo)).clamp(*ALPHA.start(), *ALPHA.end()),
@@ -74,7 +74,7 @@ impl Estimator for KajiyaIntegrator {
             ..*lane
         };
         if !bsdf.is_delta() {
-            add_delta_lights(stage, &whole, &si, &bsdf, vertex.numbers.light);
+            add_delta_lights(stage, &whole, si, &bsdf, vertex.numbers.light);
         }
         for branch in 0..self.branching {
             let mut next = whole;
