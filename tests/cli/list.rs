@@ -24,7 +24,10 @@ fn list_gives_every_parameter() {
                         "{parameter}"
                     );
                 }
-                assert!(parameter["default"].is_string(), "{parameter}");
+                assert!(
+                    parameter["default"].is_string() && parameter["unit"].is_string(),
+                    "{parameter}"
+                );
                 let line = format!(
                     "\"{} {}\"",
                     parameter["type"].as_str().unwrap_or_default(),

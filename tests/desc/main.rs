@@ -7,6 +7,7 @@ mod materials;
 mod mutations;
 mod options;
 mod ply;
+mod tables;
 mod world;
 
 use std::path::{Path, PathBuf};

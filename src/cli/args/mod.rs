@@ -72,7 +72,7 @@ pub struct InfoArgs {
 
 /// List what scene files may use, with every parameter.
 ///
-/// Of each parameter: name, type, default, allowed values, and what it means, with its unit. A scene reader goes by the same table.
+/// Of each parameter: type, name, unit, allowed values, default, and what it means. The scene reader goes by the same tables.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
