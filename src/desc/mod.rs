@@ -52,7 +52,7 @@ pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
-    TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+    TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
 pub use view::{
     ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,

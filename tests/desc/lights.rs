@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lucerna::desc::{LightKind, SceneDesc, load};
+use lucerna::desc::{ColorSpace, LightKind, SceneDesc, color_space_of, load};
 use lucerna::error::Error;
-use lucerna::image_io::{Image, PendingOutput, Window};
+use lucerna::image_io::{Image, ImageMetadata, PendingOutput, Window};
 
 use crate::STRICT;
 
@@ -178,5 +178,50 @@ fn each_bad_value_has_its_error() {
             .any(|e| (e.line, e.column) == (2, column) && e.message.contains(message));
         let all: Vec<String> = errors.iter().map(ToString::to_string).collect();
         assert!(found && errors.len() == 1, "{marked}\n{}", all.join("\n"));
+    }
+}
+
+/// What an EXR file says of its primaries and its white counts if it is a space with a name; else the scene is told.
+#[test]
+fn chromaticities_of_images_are_looked_at() {
+    let directory = images();
+    let window = Window::of_size(4, 4);
+    let image = Image::rgb(window, window, vec![0.5; 48]).expect("an image");
+    let write = |name: &str, chromaticities| {
+        let metadata = ImageMetadata {
+            seed: 0,
+            spp: 1,
+            integrator: String::new(),
+            backend: String::new(),
+            version: String::new(),
+            render_seconds: 0.0,
+            scene_hash: String::new(),
+            chromaticities,
+        };
+        let path = directory.path().join(name);
+        let written = PendingOutput::create(&path).and_then(|output| output.commit(&image, Some(&metadata), 0.0));
+        written.expect("a writable directory");
+    };
+    let white = [0.3127, 0.329];
+    write("rec2020.exr", [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], white]);
+    write("other.exr", [[0.7, 0.3], [0.17, 0.797], [0.131, 0.046], white]);
+    for (name, space, warnings) in [
+        ("square.exr", ColorSpace::Srgb, 0),
+        ("rec2020.exr", ColorSpace::Rec2020, 0),
+        ("other.exr", ColorSpace::Srgb, 2),
+    ] {
+        let text = format!(
+            "LightSource \"infinite\" \"string filename\" \"{name}\"\n\
+             Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"{name}\""
+        );
+        let scene = read(&directory, &text).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(color_space_of(&scene.images[0].image), space);
+        let LightKind::Infinite { image: Some(image), .. } = &scene.lights[0].kind else {
+            panic!("{:?}", scene.lights[0].kind)
+        };
+        assert_eq!(color_space_of(image), space);
+        let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
+        assert_eq!(lines, [2, 3][..warnings], "{:?}", scene.warnings);
+        assert!(scene.warnings.iter().all(|w| w.message.contains("sRGB is taken")));
     }
 }

@@ -19,6 +19,7 @@ fn exr_keeps_every_bit_and_both_windows_and_the_metadata() {
     assert_eq!(image.display_window(), Window::of_size(64, 64));
     assert_eq!(image.channels(), ["R", "G", "B"]);
     assert_eq!(read_metadata, Some(metadata()));
+    assert_eq!(image.chromaticities(), Some(metadata().chromaticities));
     assert_eq!(bits(&read(&path).unwrap()), bits(&crop()));
     assert_eq!(names_in(directory.path()), ["a picture.exr"]);
 }

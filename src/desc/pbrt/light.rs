@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::images::check_color_space;
 use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
 use super::spectrum::Use;
@@ -12,7 +13,7 @@ use crate::desc::kinds::lights::{
     IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
 };
 use crate::desc::{
-    AreaLightDesc, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
+    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
     SpectrumValue,
 };
 use crate::image_io::{self, Image};
@@ -153,7 +154,13 @@ impl ParamReader<'_> {
     /// The spectrum of a light. Unless RGB, it is normalised by its luminance, which must not be 0.
     fn emission(&mut self, parameter: &'static Parameter) -> Option<SpectrumDesc> {
         let name = parameter.name;
-        let spectrum = self.spectrum(name, Use::Emission)?;
+        let given = self.has(name);
+        let Some(spectrum) = self.spectrum(name, Use::Emission) else {
+            // The white of sRGB is what no spectrum stands for.
+            let (space, span) = (self.context.color_space, self.span);
+            let value = SpectrumValue::Rgb([1.0; 3], space);
+            return (!given && space != ColorSpace::Srgb).then_some(SpectrumDesc { value, span });
+        };
         if let SpectrumValue::Samples(samples) = &spectrum.value
             && samples.iter().all(|&(_, value)| value == 0.0)
         {
@@ -225,10 +232,16 @@ impl ParamReader<'_> {
             )),
             None => Ok(image),
         });
-        refused
-            .map(Arc::new)
-            .map_err(|message| self.report().error(span, message))
-            .ok()
+        match refused {
+            Ok(image) => {
+                check_color_space(self.report(), span, &path, &image);
+                Some(Arc::new(image))
+            }
+            Err(message) => {
+                self.report().error(span, message);
+                None
+            }
+        }
     }
 }
 
