@@ -43,18 +43,16 @@ struct Direction {
 
 impl Estimator for KajiyaIntegrator {
     fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>) {
-        let Vertex { lane, ray, .. } = vertex;
-        let Some(mut si) = vertex.surface else {
+        let Vertex { lane, ray, cone, .. } = vertex;
+        let Some(si) = vertex.surface else {
             for (_, light) in stage.scene.environments() {
                 let le = light.le(ray.origin, ray.direction, ray.time, &stage.slot(lane).lambda);
                 stage.add(lane, lane.beta * le);
             }
             return;
         };
-        let cone = lane.cone.after(si.p.distance(ray.origin));
-        si.footprint = cone.width;
         if let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) {
-            let le = stage.scene.light(id).le(&si, si.wo, &stage.slot(lane).lambda);
+            let le = stage.scene.light(id).le(si, si.wo, &stage.slot(lane).lambda);
             stage.add(lane, lane.beta * le);
         }
         if self.max_depth == Some(stage.depth) {

@@ -163,6 +163,7 @@ impl AreaLight {
             .map_or(SolidAnglePdf(0.0), |emitter| emitter.pdf(from, p, ng))
     }
 
+    #[inline]
     pub(super) fn sample_li(&self, from: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
         let sample = self.at(time)?.sample(from, u);
         let wi = (sample.p - from).try_normalize()?;
@@ -192,7 +193,7 @@ impl AreaLight {
         };
         let in_world = match (at, &radiance.coordinates) {
             (SamplePlace::Triangle(b), Coordinates::Corners([p, q, r])) => return *p * b.x + *q * b.y + *r * b.z,
-            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) => return Vec2::ZERO,
+            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) | (SamplePlace::Parallelogram, _) => return Vec2::ZERO,
             (SamplePlace::Ellipsoid(outward), _) => return sphere_uv(outward),
             (SamplePlace::Sphere(outward), _) => outward,
         };
@@ -220,7 +221,7 @@ impl AreaLight {
         }
         let bounds = self.emitter.shape.bounds();
         match &self.emitter.shape {
-            EmitterShape::Triangle { ng, .. } => LightBounds {
+            EmitterShape::Triangle { ng, .. } | EmitterShape::Parallelogram { ng, .. } => LightBounds {
                 bounds,
                 axis: *ng,
                 cos_normals: 1.0,
