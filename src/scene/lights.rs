@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::shapes::animated;
 use super::spectra::SpectrumCompiler;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind};
+use crate::desc::{AreaLightDesc, LightDesc, LightKind, color_space_of};
 use crate::geometry::{Geometry, Shape, TriangleMesh};
 use crate::image_io::Image;
 use crate::light::{
@@ -15,7 +15,7 @@ use crate::light::{
 };
 use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use crate::sampling::{Cell, SphereMap};
-use crate::spectrum::{ColorMode, CompiledSpectrum, RgbEmission};
+use crate::spectrum::{ColorMode, ColorSpace, CompiledSpectrum, RgbEmission};
 
 /// The lights so far.
 pub(super) struct LightBuilder {
@@ -30,6 +30,7 @@ pub(super) struct LightBuilder {
 struct Pixels {
     rgb: Vec<[f32; 3]>,
     size: [usize; 2],
+    space: ColorSpace,
 }
 
 impl Pixels {
@@ -37,6 +38,7 @@ impl Pixels {
         Ok(Self {
             rgb: image.to_rgb().ok_or("the image has no colour")?,
             size: [image.width(), image.height()],
+            space: color_space_of(image),
         })
     }
 
@@ -70,7 +72,11 @@ impl LightBuilder {
     }
 
     fn image(&self, pixels: &Pixels) -> Result<EmissionImage, String> {
-        let image = EmissionImage::new(&pixels.rgb, pixels.size[0], RgbEmission::new(self.mode));
+        let image = EmissionImage::new(
+            &pixels.rgb,
+            pixels.size[0],
+            RgbEmission::in_space(self.mode, pixels.space),
+        );
         image.ok_or_else(|| "the image has no pixels".to_owned())
     }
 
@@ -167,6 +173,7 @@ impl LightBuilder {
         let rectified = Pixels {
             rgb: rgb.collect(),
             size: [side; 2],
+            space: pixels.space,
         };
         let behind = Behind::Image(self.image(&rectified)?.scaled(factor));
         Ok(EnvironmentLight::Portal(Box::new(PortalEnvironment::new(
