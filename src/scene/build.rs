@@ -58,6 +58,7 @@ impl Scene {
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
+        let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
         let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
             LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
@@ -74,6 +75,7 @@ impl Scene {
             lights: builder.lights.lights,
             environments: builder.lights.environments,
             light_sampler,
+            emission_sampler,
             build_seconds,
         })
     }
