@@ -7,6 +7,7 @@ mod bsdfs;
 mod cameras;
 mod energy;
 mod environments;
+mod furnace;
 mod kinds;
 mod light_samplers;
 mod lights;
