@@ -12,6 +12,7 @@ mod kinds;
 mod light_samplers;
 mod lights;
 mod measured;
+mod narrow;
 
 use glam::Vec2;
 
