@@ -54,7 +54,7 @@ fn main() {
 fn write_table() {
     let directory = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     let start = Instant::now();
-    let bytes: Vec<u8> = spectrum::table_builder::coefficients()
+    let bytes: Vec<u8> = spectrum::table_builder::exact::<64>(spectrum::ColorSpace::Srgb)
         .iter()
         .flat_map(|c| c.to_le_bytes())
         .collect();

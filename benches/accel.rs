@@ -17,7 +17,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use lucerna::accel::record::{RayStreams, Recorder};
 use lucerna::accel::{Accel, Backend, BuildOptions, RayKind};
 use lucerna::desc::{self, ParseOptions};
-use lucerna::geometry::{HitPacket, LANES, Ray, RayPacket};
+use lucerna::geometry::{HitPacket, LANES, Ray, RayPacket, RayQueue};
 use lucerna::integrator::{Integrator, Silent};
 use lucerna::scene::{Scene, SceneOptions, View, ViewOverrides};
 
@@ -114,15 +114,17 @@ fn benches(c: &mut Criterion) {
                     });
                 });
                 group.bench_function(BenchmarkId::from_parameter(format!("{backend}-packed")), |b| {
-                    let mut hot = Vec::with_capacity(WAVE * LANES);
+                    let (mut hot, mut queue) = (Vec::with_capacity(WAVE * LANES), RayQueue::default());
                     b.iter_custom(|iterations| {
                         timed(iterations, &rays.chunks(WAVE * LANES), |rays| {
                             hot.clear();
                             hot.extend_from_slice(rays);
                             let start = Instant::now();
-                            RayPacket::pack(hot.iter().copied(), &mut wave);
-                            let packets = wave.len();
-                            trace(scene.accel(), kind, &mut wave, &mut hits[..packets]);
+                            queue.clear();
+                            hot.iter().for_each(|ray| queue.push(ray));
+                            let packets = queue.packets_mut();
+                            let hits = &mut hits[..packets.len()];
+                            trace(scene.accel(), kind, packets, hits);
                             start.elapsed()
                         })
                     });

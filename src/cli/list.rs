@@ -8,12 +8,12 @@ use serde::Serialize;
 
 use super::args::{ListArgs, ListKind};
 use super::report::print_json;
-use crate::desc::{INTEGRATORS, LIGHTS, MATERIALS, Parameter, SAMPLERS, TEXTURES, TextureClass};
+use crate::desc::{Entry, INTEGRATORS, LIGHTS, MATERIALS, Parameter, SAMPLERS, TEXTURES};
 use crate::error::{Error, Result};
 
-/// Something that a scene file may use.
+/// An [`Entry`], ready to print.
 #[derive(Debug, Serialize)]
-struct Entry {
+struct Listed {
     name: &'static str,
     directive: &'static str,
     /// Of a texture: `float`, `spectrum` or both.
@@ -27,94 +27,66 @@ struct Entry {
 #[derive(Debug, Serialize)]
 struct Row {
     name: &'static str,
-    r#type: &'static str,
+    r#type: String,
     range: String,
     /// Empty if there is none.
     default: String,
+    /// Empty if there is none.
+    unit: &'static str,
     description: &'static str,
 }
 
 /// Prints the tables that the scene reader goes by.
 pub fn run(args: &ListArgs) -> Result<()> {
-    let mut entries = entries(args.what);
-    if let Some(name) = &args.name {
-        let names: Vec<_> = entries.iter().map(|entry| entry.name).collect();
-        if !names.contains(&name.as_str()) {
-            let message = format!("nothing is called `{name}` there: expected one of {}", names.join(", "));
-            return Err(Error::Usage(message));
-        }
-        entries.retain(|entry| entry.name == name);
+    let table = table(args.what);
+    let of_name = |entry: &&Entry| args.name.as_ref().is_none_or(|name| name == entry.name);
+    let listed: Vec<_> = table.iter().filter(of_name).map(Listed::new).collect();
+    if let (Some(name), []) = (&args.name, &listed[..]) {
+        let names: Vec<_> = table.iter().map(|entry| entry.name).collect();
+        let message = format!("nothing is called `{name}` there: expected one of {}", names.join(", "));
+        return Err(Error::Usage(message));
     }
     if args.json {
-        return print_json(&entries);
+        return print_json(&listed);
     }
     let mut out = std::io::stdout().lock();
-    entries
+    listed
         .iter()
         .try_for_each(|entry| write!(out, "{entry}"))
         .map_err(|e| Error::io("write", Path::new("stdout"), e))
 }
 
-fn entries(what: ListKind) -> Vec<Entry> {
+fn table(what: ListKind) -> &'static [Entry] {
     match what {
-        ListKind::Materials => MATERIALS
-            .iter()
-            .map(|e| Entry::new(e.name, "Material", e.doc, e.parameters))
-            .collect(),
-        ListKind::Lights => LIGHTS
-            .iter()
-            .map(|e| Entry::new(e.name, e.directive, e.doc, e.parameters))
-            .collect(),
-        ListKind::Textures => TEXTURES
-            .iter()
-            .map(|e| Entry {
-                classes: e.classes.iter().map(|&class| class_name(class)).collect(),
-                ..Entry::new(e.name, "Texture", e.doc, e.parameters)
-            })
-            .collect(),
-        ListKind::Samplers => SAMPLERS
-            .iter()
-            .map(|e| Entry::new(e.name, "Sampler", e.doc, e.parameters))
-            .collect(),
-        ListKind::Integrators => INTEGRATORS
-            .iter()
-            .map(|e| Entry::new(e.name, "Integrator", e.doc, e.parameters))
-            .collect(),
+        ListKind::Materials => &MATERIALS,
+        ListKind::Lights => &LIGHTS,
+        ListKind::Textures => &TEXTURES,
+        ListKind::Samplers => &SAMPLERS,
+        ListKind::Integrators => &INTEGRATORS,
     }
 }
 
-fn class_name(class: TextureClass) -> &'static str {
-    match class {
-        TextureClass::Float => "float",
-        TextureClass::Spectrum => "spectrum",
-    }
-}
-
-impl Entry {
-    fn new(
-        name: &'static str,
-        directive: &'static str,
-        description: &'static str,
-        parameters: &[&'static Parameter],
-    ) -> Self {
+impl Listed {
+    fn new(entry: &Entry) -> Self {
         let row = |parameter: &&'static Parameter| Row {
             name: parameter.name,
-            r#type: parameter.kind.type_text(),
+            r#type: parameter.kind.types().join(" | "),
             range: parameter.kind.range_text(),
             default: parameter.kind.default_text(),
+            unit: parameter.unit,
             description: parameter.doc,
         };
         Self {
-            name,
-            directive,
-            classes: Vec::new(),
-            description,
-            parameters: parameters.iter().map(row).collect(),
+            name: entry.name,
+            directive: entry.directive,
+            classes: entry.classes.iter().map(|class| class.name()).collect(),
+            description: entry.doc,
+            parameters: entry.parameters.iter().map(row).collect(),
         }
     }
 }
 
-impl Display for Entry {
+impl Display for Listed {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let classes = match self.classes.as_slice() {
             [] => String::new(),
@@ -126,7 +98,12 @@ impl Display for Entry {
                 "" => "no default".to_owned(),
                 default => format!("default {default}"),
             };
-            writeln!(f, "  \"{} {}\": {}; {default}", row.r#type, row.name, row.range)?;
+            let unit = if row.unit.is_empty() {
+                String::new()
+            } else {
+                format!(" [{}]", row.unit)
+            };
+            writeln!(f, "  \"{} {}\"{unit}: {}; {default}", row.r#type, row.name, row.range)?;
             writeln!(f, "      {}", row.description)?;
         }
         writeln!(f)

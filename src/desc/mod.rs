@@ -18,19 +18,14 @@
 
 mod bytes;
 mod integrator;
-mod integrator_kinds;
+mod kinds;
 mod light;
-mod light_kinds;
 mod material;
-mod material_kinds;
-mod parameter;
 pub mod pbrt;
 pub mod ply;
 pub mod rgl;
-mod sampler_kinds;
 mod shape;
 mod texture;
-mod texture_kinds;
 mod view;
 
 use std::path::Path;
@@ -45,23 +40,20 @@ pub use integrator::{
     Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy,
     Termination,
 };
-pub use integrator_kinds::{INTEGRATORS, IntegratorEntry};
+pub use kinds::{
+    Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, Parameter, ParameterDefault, ParameterKind, SAMPLERS, TEXTURES,
+};
 pub use light::{AreaLightDesc, LightDesc, LightKind};
-pub use light_kinds::{LIGHTS, LightEntry};
 pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
     SpectrumDesc, SpectrumValue,
 };
-pub use material_kinds::{MATERIALS, MaterialEntry};
-pub use parameter::{FloatRange, Parameter, ParameterKind};
 pub use rgl::{MeasuredDesc, Tensor};
-pub use sampler_kinds::{SAMPLERS, SamplerEntry};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
-    TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+    TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
-pub use texture_kinds::{TEXTURES, TextureEntry};
 pub use view::{
     ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,
     SamplerDesc, SensorDesc, ViewDesc,

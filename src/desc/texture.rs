@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3, Vec2, Vec3};
 use super::SpectrumDesc;
 use crate::error::Span;
 use crate::image_io::Image;
+use crate::spectrum::ColorSpace;
 
 /// Index into [`SceneDesc::textures`](super::SceneDesc::textures).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -183,8 +184,15 @@ pub struct ImageId(pub u32);
 pub struct ImageDesc {
     /// Where it is.
     pub path: PathBuf,
-    /// Its linear values; it has the channels R, G and B, or Y.
+    /// Its linear values, in the space that [`color_space_of`] says; it has the channels R, G and B, or Y.
     pub image: Arc<Image>,
+}
+
+/// What R, G and B of an image are, as in pbrt-v4: what an EXR file says by its chromaticities, if they are those of a space that has a
+/// name; else sRGB.
+pub fn color_space_of(image: &Image) -> ColorSpace {
+    let named = image.chromaticities().and_then(ColorSpace::from_chromaticities);
+    named.unwrap_or_default()
 }
 
 /// An image as a texture.

@@ -26,17 +26,15 @@ pub struct TileSums {
 /// The greatest magnitude that is added: 2^62 of them still fit.
 const LARGEST: f64 = (1_u64 << 62) as f64;
 
-/// `value` in units of 2^-64, rounded down; `None` if it is not finite or beyond [`LARGEST`].
+/// `value` in units of 2^-64, rounded to an even number of them towards 0; `None` if it is not finite or beyond [`LARGEST`].
 #[inline]
 fn quantize(value: f64) -> Option<i128> {
-    if value.abs() < LARGEST {
-        // Both parts are exact, and so is scaling by a power of two.
-        let whole = value.floor();
-        let fraction = (value - whole) * 18_446_744_073_709_551_616.0;
-        Some((i128::from(whole as i64) << 64) + i128::from(fraction as u64))
-    } else {
-        None
-    }
+    (value.abs() < LARGEST).then(|| {
+        // Both parts are exact, and so is scaling by a power of two. The fraction may be negative: 2^63 of them fit a signed integer.
+        let whole = value as i64;
+        let fraction = (value - whole as f64) * 9_223_372_036_854_775_808.0;
+        (i128::from(whole) << 64) + (i128::from(fraction as i64) << 1)
+    })
 }
 
 /// Back to a number.

@@ -1,5 +1,6 @@
 //! Indexed triangle meshes, with vertices that may move.
 
+use super::triangle::Corners;
 use crate::math::{Bounds3, Vec2, Vec3};
 
 /// An indexed triangle mesh. Vertices are given at one or more scene times, evenly spaced over [0, 1], and move linearly
@@ -167,8 +168,31 @@ impl TriangleMesh {
         if fraction == 0.0 {
             return now;
         }
-        let next = corners.map(|v| self.positions[step + 1][v as usize]);
+        self.moved(triangle, step, fraction, now)
+    }
+
+    /// The corners of a triangle, which at a time step are `now`, at a fraction of the way to the next.
+    #[inline(never)]
+    fn moved(&self, triangle: usize, step: usize, fraction: f32, now: [Vec3; 3]) -> [Vec3; 3] {
+        let next = self.indices[triangle].map(|v| self.positions[step + 1][v as usize]);
         std::array::from_fn(|i| now[i] * (1.0 - fraction) + next[i] * fraction)
+    }
+
+    /// What the mesh says of the corners of a triangle. Without texture coordinates they are (0, 0), (1, 0), (1, 1), as in pbrt.
+    #[inline]
+    pub(super) fn corners(&self, triangle: usize) -> Corners {
+        let corners = self.indices[triangle].map(|v| v as usize);
+        Corners {
+            normals: self
+                .normals
+                .as_ref()
+                .map_or([Vec3::ZERO; 3], |normals| corners.map(|v| normals[v])),
+            uvs: self
+                .uvs
+                .as_ref()
+                .map_or([Vec2::ZERO, Vec2::X, Vec2::ONE], |uvs| corners.map(|v| uvs[v])),
+            side: if self.flip_normal { -1.0 } else { 1.0 },
+        }
     }
 
     /// The unit geometric normal of a triangle at scene time 0, on the side of its shading normals if it has any; zero if the

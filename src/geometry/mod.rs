@@ -5,14 +5,16 @@ mod mesh;
 mod packet;
 mod sphere;
 mod surface;
+mod surface_lanes;
 mod triangle;
 mod world;
 
 pub use cone::RayCone;
 pub use mesh::{MeshError, TriangleMesh};
-pub use packet::{HitPacket, LANES, Ray, RayPacket};
+pub use packet::{HitPacket, LANES, Ray, RayPacket, RayQueue};
 pub use sphere::{Sphere, SphereHits};
-pub use surface::{Hit, SurfaceInteraction, SurfacePacket};
+pub use surface::{Hit, SurfaceInteraction};
+pub use surface_lanes::SurfaceLanes;
 pub use triangle::{LEAST_ERROR, triangle_error};
 pub use world::{Geometry, Group, Instance, Opacity, Shape, World, WorldBuilder};
 

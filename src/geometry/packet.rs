@@ -156,17 +156,65 @@ impl RayPacket {
     pub fn is_occluded(&self, lane: usize) -> bool {
         self.tfar[lane] == f32::NEG_INFINITY
     }
+}
 
-    /// Packs `rays`, eight at a time in their order, over what `packets` held; the last packet may be partial.
-    pub fn pack(rays: impl IntoIterator<Item = Ray>, packets: &mut Vec<Self>) {
-        packets.clear();
-        for (i, ray) in rays.into_iter().enumerate() {
-            if i % LANES == 0 {
-                packets.push(Self::EMPTY);
+/// Rays, packed as they come: ray i is lane i % 8 of packet i / 8. Lanes of the last packet that hold no ray take no part.
+#[derive(Clone, Debug, Default)]
+pub struct RayQueue {
+    /// Those from the last in use on are left over from a longer queue.
+    packets: Vec<RayPacket>,
+    len: usize,
+}
+
+impl RayQueue {
+    /// Adds a ray.
+    #[inline]
+    pub fn push(&mut self, ray: &Ray) {
+        let (packet, lane) = (self.len / LANES, self.len % LANES);
+        if lane == 0 {
+            if packet == self.packets.len() {
+                self.packets.push(RayPacket::EMPTY);
             }
-            let last = packets.len() - 1;
-            packets[last].set(i % LANES, &ray);
+            self.packets[packet].tfar = RayPacket::EMPTY.tfar;
         }
+        self.packets[packet].set(lane, ray);
+        self.len += 1;
+    }
+
+    /// Number of rays.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Forgets all rays.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Their packets.
+    #[inline]
+    pub fn packets(&self) -> &[RayPacket] {
+        &self.packets[..self.len.div_ceil(LANES)]
+    }
+
+    /// Their packets, for a backend to write to.
+    #[inline]
+    pub fn packets_mut(&mut self) -> &mut [RayPacket] {
+        &mut self.packets[..self.len.div_ceil(LANES)]
+    }
+}
+
+impl FromIterator<Ray> for RayQueue {
+    fn from_iter<I: IntoIterator<Item = Ray>>(rays: I) -> Self {
+        let mut queue = Self::default();
+        rays.into_iter().for_each(|ray| queue.push(&ray));
+        queue
     }
 }
 

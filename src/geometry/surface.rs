@@ -1,11 +1,9 @@
 //! From the ids of a hit to the surface there. Distance and position are recomputed from ray and primitive in double precision,
 //! so that they do not depend on the backend or on its vector width.
 
-use super::triangle::{self, LEAST_ERROR, TriangleLanes, WorldPoint, WorldPoints, rounding_error};
-use super::{
-    GeometryId, HitPacket, InstanceId, LANES, PrimitiveId, Ray, RayPacket, Shape, Sphere, TriangleMesh, World,
-};
-use crate::math::{DAffine3, DVec3, Vec2, Vec3, Vectorizer, gamma, offset_ray_origin};
+use super::triangle::{self, LEAST_ERROR, rounding_error};
+use super::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
+use crate::math::{DAffine3, DVec3, Vec2, Vec3, gamma, offset_ray_origin};
 
 /// What a ray hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,10 +93,8 @@ impl World {
         let Some(id) = hit.instance else {
             return match shape {
                 Shape::Mesh(mesh) => {
-                    let triangle = hit.primitive.index();
-                    let vertices = mesh.triangle(triangle, ray.time);
-                    let point = triangle::point(&vertices, origin, direction).in_world();
-                    world_triangle(mesh, &vertices, &point, ray, hit)
+                    let surface = triangle_surface(mesh, hit.primitive.index(), origin, direction, ray.time);
+                    finish(&surface, ray, hit)
                 }
                 Shape::Spheres(spheres) => {
                     let sphere = &spheres[hit.primitive.index()];
@@ -120,58 +116,6 @@ impl World {
             hit,
         )
     }
-
-    /// [`World::interaction`] of each lane of a packet that takes part and hit something; the same bits, faster.
-    #[inline]
-    pub fn surfaces(&self, vectorizer: Vectorizer, rays: &RayPacket, hits: &HitPacket) -> SurfacePacket<'_> {
-        let mut lanes = TriangleLanes {
-            origins: [rays.org_x, rays.org_y, rays.org_z],
-            directions: [rays.dir_x, rays.dir_y, rays.dir_z],
-            ..TriangleLanes::default()
-        };
-        for lane in 0..LANES {
-            if let Some(hit) = hits.get(lane)
-                && let Some((mesh, triangle)) = self.world_mesh(hit)
-            {
-                for (axes, vertex) in lanes.vertices.iter_mut().zip(mesh.triangle(triangle, rays.time[lane])) {
-                    [axes[0][lane], axes[1][lane], axes[2][lane]] = vertex.to_array();
-                }
-            }
-        }
-        SurfacePacket {
-            world: self,
-            points: lanes.points(vectorizer),
-            vertices: lanes.vertices,
-        }
-    }
-
-    /// The mesh and the triangle that were hit, if the mesh is in world space.
-    #[inline]
-    fn world_mesh(&self, hit: Hit) -> Option<(&TriangleMesh, usize)> {
-        match &self.geometry(hit.geometry).shape {
-            Shape::Mesh(mesh) if hit.instance.is_none() => Some((mesh, hit.primitive.index())),
-            Shape::Mesh(_) | Shape::Spheres(_) => None,
-        }
-    }
-}
-
-/// What [`World::surfaces`] computed for eight rays together.
-pub struct SurfacePacket<'a> {
-    world: &'a World,
-    points: WorldPoints,
-    vertices: [[[f32; LANES]; 3]; 3],
-}
-
-impl SurfacePacket<'_> {
-    /// [`World::interaction`] of `ray` with what it `hit`, which were in this lane.
-    #[inline]
-    pub fn get(&self, lane: usize, ray: &Ray, hit: Hit) -> SurfaceInteraction {
-        let Some((mesh, _)) = self.world.world_mesh(hit) else {
-            return self.world.interaction(ray, hit);
-        };
-        let vertices = self.vertices.map(|axes| Vec3::from_array(axes.map(|axis| axis[lane])));
-        world_triangle(mesh, &vertices, &self.points.get(lane), ray, hit)
-    }
 }
 
 /// A surface point in the space of its group.
@@ -181,7 +125,7 @@ struct LocalSurface {
     error: f64,
     /// Unit length.
     ng: DVec3,
-    /// Of any length but 0.
+    /// Unit length; 0 for that of `ng`.
     ns: Vec3,
     dpdu: Vec3,
     dpdv: Vec3,
@@ -194,7 +138,7 @@ fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
         p: local.p.as_vec3(),
         error: (local.error + rounding_error(local.p, ng)) as f32,
         ng,
-        ns: local.ns.try_normalize().unwrap_or(ng),
+        ns: if local.ns == Vec3::ZERO { ng } else { local.ns },
         dpdu: local.dpdu,
         dpdv: local.dpdv,
         uv: local.uv,
@@ -234,104 +178,19 @@ fn to_world(
     }
 }
 
-/// What a mesh says about a point of a triangle.
-struct Attributes {
-    /// Whether the geometric normal points to the side from which the vertices run clockwise.
-    flips_normal: bool,
-    /// Interpolated shading normal, not normalised; `None` without normals, or where they cancel.
-    ns: Option<Vec3>,
-    dpdu: Vec3,
-    dpdv: Vec3,
-    uv: Vec2,
-}
-
-/// Attributes of the point of a triangle with given anticlockwise normal `ng` and barycentrics of its second and third corner.
-#[inline]
-fn attributes(mesh: &TriangleMesh, triangle: usize, vertices: &[Vec3; 3], ng: Vec3, [v, w]: [f32; 2]) -> Attributes {
-    let weights = [1.0 - v - w, v, w];
-    let corners = mesh.indices()[triangle].map(|v| v as usize);
-    let mut flips_normal = mesh.has_flipped_normal();
-    let mut ns = None;
-    if let Some(normals) = mesh.normals() {
-        let normals = corners.map(|v| normals[v]);
-        // With normals given they say which side is out, as in pbrt.
-        let cos = ng.dot(normals[0] + normals[1] + normals[2]);
-        flips_normal = cos < 0.0 || (cos == 0.0 && flips_normal);
-        let mean = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
-        ns = (mean != Vec3::ZERO).then_some(mean);
-    }
-    let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    let (uv, [dpdu, dpdv]) = match mesh.uvs() {
-        // Without coordinates: (0, 0), (1, 0), (1, 1).
-        None => (Vec2::new(v + w, w), [e1, e2 - e1]),
-        Some(uvs) => {
-            let uvs = corners.map(|v| uvs[v]);
-            let uv = uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2];
-            (uv, triangle_derivatives(e1, e2, &uvs))
-        }
-    };
-    Attributes {
-        flips_normal,
-        ns,
-        dpdu,
-        dpdv,
-        uv,
-    }
-}
-
 fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
     let vertices = mesh.triangle(triangle, time);
     let point = triangle::point(&vertices, origin, direction);
-    let barycentrics = point.barycentrics.map(|b| b as f32);
-    let attributes = attributes(mesh, triangle, &vertices, point.ng.as_vec3(), barycentrics);
-    let ng = if attributes.flips_normal { -point.ng } else { point.ng };
+    let (barycentrics, ng) = point.in_single_precision();
+    let attributes = mesh.corners(triangle).at(&vertices, ng, barycentrics);
     LocalSurface {
         p: point.p,
         error: point.error,
-        ng,
-        ns: attributes.ns.unwrap_or(ng.as_vec3()),
+        ng: point.ng * f64::from(attributes.side),
+        ns: attributes.ns,
         dpdu: attributes.dpdu,
         dpdv: attributes.dpdv,
         uv: attributes.uv,
-    }
-}
-
-/// The surface at a point of a triangle of a mesh in world space.
-#[inline]
-fn world_triangle(
-    mesh: &TriangleMesh,
-    vertices: &[Vec3; 3],
-    point: &WorldPoint,
-    ray: &Ray,
-    hit: Hit,
-) -> SurfaceInteraction {
-    let attributes = attributes(mesh, hit.primitive.index(), vertices, point.ng, point.barycentrics);
-    let ng = if attributes.flips_normal { -point.ng } else { point.ng };
-    SurfaceInteraction {
-        p: point.p,
-        error: point.error,
-        ng,
-        ns: attributes.ns.and_then(Vec3::try_normalize).unwrap_or(ng),
-        dpdu: attributes.dpdu,
-        dpdv: attributes.dpdv,
-        uv: attributes.uv,
-        wo: -ray.direction,
-        footprint: 0.0,
-        time: ray.time,
-        hit,
-    }
-}
-
-/// Solves dp = dpdu du + dpdv dv along two edges for dpdu and dpdv; zero where the texture coordinates are degenerate.
-#[inline]
-fn triangle_derivatives(e1: Vec3, e2: Vec3, uv: &[Vec2; 3]) -> [Vec3; 2] {
-    let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
-    let determinant = d1.perp_dot(d2);
-    if determinant == 0.0 {
-        [Vec3::ZERO; 2]
-    } else {
-        let inverse = 1.0 / determinant;
-        [(e1 * d2.y - e2 * d1.y) * inverse, (e2 * d1.x - e1 * d2.x) * inverse]
     }
 }
 

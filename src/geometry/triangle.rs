@@ -1,7 +1,6 @@
 //! Where a ray meets a triangle, in double precision, and how far from there a backend may see it.
 
-use super::LANES;
-use crate::math::{DVec3, Kernel, Vec3, Vectorizer, gamma};
+use crate::math::{DVec3, Vec2, Vec3, gamma};
 
 /// The least error, relative to the size of a primitive: where a plane through the origin is exact a ray must start off it all
 /// the same, and by more than the smallest numbers there are.
@@ -67,7 +66,7 @@ pub(super) struct TrianglePoint {
 }
 
 /// The point where a ray's line meets a triangle's plane, or the nearest of the triangle, nearly, where a backend rounded otherwise
-/// (Moeller and Trumbore 1997). Without branches, for the sake of [`points`].
+/// (Moeller and Trumbore 1997). Without branches, so that it is vectorised over lanes.
 #[inline(always)]
 pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> TrianglePoint {
     let vertices = vertices.map(Vec3::as_dvec3);
@@ -91,27 +90,11 @@ pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> Tr
     }
 }
 
-/// A point of a triangle in world space, in single precision.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct WorldPoint {
-    pub p: Vec3,
-    /// That of [`TrianglePoint`] and of the rounding to single precision.
-    pub error: f32,
-    pub ng: Vec3,
-    pub barycentrics: [f32; 2],
-}
-
 impl TrianglePoint {
-    /// As it is, where the vertices are in world space.
+    /// Barycentric coordinates of the second and the third vertex, and the normal, in single precision.
     #[inline(always)]
-    pub fn in_world(&self) -> WorldPoint {
-        let ng = self.ng.as_vec3();
-        WorldPoint {
-            p: self.p.as_vec3(),
-            error: (self.error + rounding_error(self.p, ng)) as f32,
-            ng,
-            barycentrics: self.barycentrics.map(|b| b as f32),
-        }
+    pub fn in_single_precision(&self) -> ([f32; 2], Vec3) {
+        (self.barycentrics.map(|b| b as f32), self.ng.as_vec3())
     }
 }
 
@@ -121,68 +104,59 @@ pub(super) fn rounding_error(p: DVec3, n: Vec3) -> f64 {
     n.abs().as_dvec3().dot(p.abs()) * f64::from(gamma(3))
 }
 
-/// Eight triangles and the rays that meet them, element by element.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct TriangleLanes {
-    /// By vertex and axis.
-    pub vertices: [[[f32; LANES]; 3]; 3],
-    /// By axis.
-    pub origins: [[f32; LANES]; 3],
-    /// By axis.
-    pub directions: [[f32; LANES]; 3],
+/// What a mesh says of the corners of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corners {
+    /// Shading normals, of any length; all zero if the mesh has none.
+    pub normals: [Vec3; 3],
+    /// Texture coordinates.
+    pub uvs: [Vec2; 3],
+    /// 1 if the geometric normal is on the anticlockwise side, -1 if on the other, if there are no normals to say so.
+    pub side: f32,
 }
 
-/// Eight of [`WorldPoint`].
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct WorldPoints {
-    p: [[f32; LANES]; 3],
-    error: [f32; LANES],
-    ng: [[f32; LANES]; 3],
-    barycentrics: [[f32; LANES]; 2],
+/// What a mesh says about a point of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attributes {
+    /// 1 if the geometric normal is on the side from which the vertices run anticlockwise, -1 if on the other.
+    pub side: f32,
+    /// Interpolated shading normal, unit length; zero without normals, or where they cancel.
+    pub ns: Vec3,
+    pub dpdu: Vec3,
+    pub dpdv: Vec3,
+    pub uv: Vec2,
 }
 
-impl TriangleLanes {
-    /// [`point`] of each lane, in world space: the same bits as one by one, several times faster.
-    #[inline]
-    pub fn points(&self, vectorizer: Vectorizer) -> WorldPoints {
-        vectorizer.run(PointLanes(self))
-    }
-}
-
-/// See [`TriangleLanes::points`].
-struct PointLanes<'a>(&'a TriangleLanes);
-
-impl Kernel for PointLanes<'_> {
-    type Output = WorldPoints;
-
+impl Corners {
+    /// At the point with the barycentrics `v` and `w` of the second and the third corner, where the anticlockwise normal is `ng`.
+    /// Without branches, as [`point`] is.
     #[inline(always)]
-    fn call(self) -> WorldPoints {
-        let Self(lanes) = self;
-        let mut points = WorldPoints::default();
-        for i in 0..LANES {
-            let of = |axes: &[[f32; LANES]; 3]| Vec3::new(axes[0][i], axes[1][i], axes[2][i]);
-            let [a, b, c] = &lanes.vertices;
-            let (origin, direction) = (of(&lanes.origins).as_dvec3(), of(&lanes.directions).as_dvec3());
-            let point = point(&[of(a), of(b), of(c)], origin, direction).in_world();
-            [points.p[0][i], points.p[1][i], points.p[2][i]] = [point.p.x, point.p.y, point.p.z];
-            [points.ng[0][i], points.ng[1][i], points.ng[2][i]] = [point.ng.x, point.ng.y, point.ng.z];
-            points.error[i] = point.error;
-            [points.barycentrics[0][i], points.barycentrics[1][i]] = point.barycentrics;
+    pub fn at(&self, vertices: &[Vec3; 3], ng: Vec3, [v, w]: [f32; 2]) -> Attributes {
+        let u = 1.0 - v - w;
+        let [a, b, c] = self.normals;
+        // With normals given they say which side is out, as in pbrt.
+        let cos = ng.dot(a + b + c);
+        let mean = a * u + b * v + c * w;
+        let inverse_length = 1.0 / mean.length();
+        let has_direction = (inverse_length > 0.0) & (inverse_length < f32::INFINITY);
+        let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
+        let [p, q, r] = self.uvs;
+        let [dpdu, dpdv] = derivatives(e1, e2, q - p, r - p);
+        Attributes {
+            side: if cos == 0.0 { self.side } else { 1.0_f32.copysign(cos) },
+            ns: mean * if has_direction { inverse_length } else { 0.0 },
+            dpdu,
+            dpdv,
+            uv: p * u + q * v + r * w,
         }
-        points
     }
 }
 
-impl WorldPoints {
-    /// One of them.
-    #[inline]
-    pub fn get(&self, lane: usize) -> WorldPoint {
-        let of = |axes: &[[f32; LANES]; 3]| Vec3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
-        WorldPoint {
-            p: of(&self.p),
-            error: self.error[lane],
-            ng: of(&self.ng),
-            barycentrics: self.barycentrics.map(|b| b[lane]),
-        }
-    }
+/// Solves dp = dpdu du + dpdv dv along two edges, over which (u, v) change by `d1` and `d2`; zero where these are degenerate.
+#[inline(always)]
+fn derivatives(e1: Vec3, e2: Vec3, d1: Vec2, d2: Vec2) -> [Vec3; 2] {
+    let determinant = d1.perp_dot(d2);
+    let inverse = 1.0 / determinant;
+    let inverse = if determinant == 0.0 { 0.0 } else { inverse };
+    [(e1 * d2.y - e2 * d1.y) * inverse, (e2 * d1.x - e1 * d2.x) * inverse]
 }

@@ -1,5 +1,7 @@
 //! What the numbers of integer image formats mean.
 
+use std::fmt::{Display, Formatter};
+
 use super::srgb;
 
 /// The curve from a stored value in [0, 1] to a linear one. Floating-point formats are linear.
@@ -42,6 +44,17 @@ impl Encoding {
     }
 }
 
+/// The name of pbrt-v4, which [`Encoding::from_name`] reads.
+impl Display for Encoding {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Srgb => f.write_str("sRGB"),
+            Self::Linear => f.write_str("linear"),
+            Self::Gamma(exponent) => write!(f, "gamma {exponent}"),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,6 +64,9 @@ mod tests {
         assert_eq!(Encoding::from_name("sRGB"), Some(Encoding::Srgb));
         assert_eq!(Encoding::from_name("linear"), Some(Encoding::Linear));
         assert_eq!(Encoding::from_name("gamma 2.2"), Some(Encoding::Gamma(2.2)));
+        for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Gamma(2.2)] {
+            assert_eq!(Encoding::from_name(&encoding.to_string()), Some(encoding));
+        }
         for wrong in [
             "srgb",
             "gamma",

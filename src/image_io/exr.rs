@@ -2,11 +2,12 @@
 //!
 //! Files are reproducible: the same image and metadata give the same bytes.
 
+use super::image::Chromaticities;
 use super::metadata::latin1;
 use super::{Image, ImageMetadata, Window, image_error, read_bytes};
 use crate::Result;
 use ::exr::block::{BlockIndex, UncompressedBlock, writer::ChunksWriter};
-use ::exr::meta::attribute::{ChannelDescription, Chromaticities, SampleType};
+use ::exr::meta::attribute::{self, ChannelDescription, SampleType};
 use ::exr::meta::header::{Header, LayerAttributes};
 use ::exr::meta::{BlockDescription, MetaData};
 use ::exr::prelude::{
@@ -17,8 +18,8 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// The primaries and white of Rec. 709 and sRGB, which all images of this crate have.
-const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
+/// The primaries and white of Rec. 709 and sRGB, which an image has whose file does not say so.
+const REC_709: Chromaticities = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 /// Reads R, G, B and, if present, A of an EXR file, or Y and A of a grey one: half, float or integer samples, scan lines or tiles
 /// (the largest level), any compression but HTJ2K and DWA's unsupported variants. Of several parts the first is read; other
@@ -61,11 +62,9 @@ fn decode_unguarded(bytes: &[u8]) -> Result<(Image, Option<ImageMetadata>), Stri
     let chromaticities = file
         .attributes
         .chromaticities
-        .map_or(REC_709, |c| [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y]));
-    Ok((
-        image,
-        ImageMetadata::from_attributes(&layer.attributes.other, chromaticities),
-    ))
+        .map(|c| [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y]));
+    let metadata = ImageMetadata::from_attributes(&layer.attributes.other, chromaticities.unwrap_or(REC_709));
+    Ok((image.with_chromaticities(chromaticities), metadata))
 }
 
 /// Refuses an image that memory cannot hold: a damaged header may ask for any size, and a failed allocation would end the process.
@@ -164,7 +163,7 @@ fn header_of(image: &Image, metadata: Option<&ImageMetadata>) -> Result<Header, 
         .with_display_window(display)
         .with_attributes(attributes);
     let [red, green, blue, white] = metadata.map_or(REC_709, |m| m.chromaticities).map(|[x, y]| Vec2(x, y));
-    header.shared_attributes.chromaticities = Some(Chromaticities {
+    header.shared_attributes.chromaticities = Some(attribute::Chromaticities {
         red,
         green,
         blue,

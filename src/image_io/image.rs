@@ -51,7 +51,11 @@ pub struct Image {
     display_window: Window,
     channels: Vec<String>,
     data: Vec<f32>,
+    chromaticities: Option<Chromaticities>,
 }
+
+/// (x, y) of red, green, blue and white: what R, G and B of an image are.
+pub type Chromaticities = [[f32; 2]; 4];
 
 impl Image {
     /// An image of the pixels in `data_window`, which may be a part of `display_window` (a crop), or reach beyond it.
@@ -83,7 +87,14 @@ impl Image {
             display_window,
             channels,
             data,
+            chromaticities: None,
         })
+    }
+
+    /// This image with what its file says of its colours.
+    #[must_use]
+    pub(super) fn with_chromaticities(self, chromaticities: Option<Chromaticities>) -> Self {
+        Self { chromaticities, ..self }
     }
 
     /// An image with the channels R, G and B; see [`Image::new`].
@@ -118,6 +129,11 @@ impl Image {
     /// The channels' names, in the order of their values in a pixel.
     pub fn channels(&self) -> &[String] {
         &self.channels
+    }
+
+    /// What the colours are, if the image's file says so; else they are those of sRGB.
+    pub fn chromaticities(&self) -> Option<Chromaticities> {
+        self.chromaticities
     }
 
     /// All values; the layout is the type's.

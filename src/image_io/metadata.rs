@@ -3,6 +3,8 @@
 use ::exr::meta::attribute::{AttributeValue, Text};
 use std::collections::HashMap;
 
+use super::Chromaticities;
+
 /// How an image was made: enough to make it again. Nothing depends on the time of day, so two files of the same render differ in
 /// `render_seconds` only.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +24,7 @@ pub struct ImageMetadata {
     /// `lucerna:scene_hash`, of the scene description, in hexadecimal.
     pub scene_hash: String,
     /// Chromaticities (x, y) of red, green, blue and white, the standard attribute `chromaticities`: what colour space R, G and B are in.
-    pub chromaticities: [[f32; 2]; 4],
+    pub chromaticities: Chromaticities,
 }
 
 const SEED: &str = "lucerna:seed";
@@ -53,7 +55,7 @@ impl ImageMetadata {
     /// The metadata among a file's attributes; `None` unless all of it is there with the right types.
     pub(super) fn from_attributes(
         attributes: &HashMap<Text, AttributeValue>,
-        chromaticities: [[f32; 2]; 4],
+        chromaticities: Chromaticities,
     ) -> Option<Self> {
         let value = |name: &str| attributes.get(&latin1(name));
         let text = |name: &str| match value(name) {

@@ -21,7 +21,7 @@ pub mod srgb;
 
 pub use self::encoding::Encoding;
 pub use self::exr::read_exr;
-pub use self::image::{Image, Window};
+pub use self::image::{Chromaticities, Image, Window};
 pub use self::metadata::ImageMetadata;
 pub use self::metrics::Comparison;
 pub use self::output::{ImageFormat, PendingOutput, Written};

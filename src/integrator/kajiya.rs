@@ -43,25 +43,23 @@ struct Direction {
 
 impl Estimator for KajiyaIntegrator {
     fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>) {
-        let Vertex { lane, ray, .. } = vertex;
-        let Some(mut si) = vertex.surface else {
+        let Vertex { lane, ray, cone, .. } = vertex;
+        let Some(si) = vertex.surface else {
             for (_, light) in stage.scene.environments() {
                 let le = light.le(ray.origin, ray.direction, ray.time, &stage.slot(lane).lambda);
                 stage.add(lane, lane.beta * le);
             }
             return;
         };
-        let cone = lane.cone.after(si.p.distance(ray.origin));
-        si.footprint = cone.width;
         if let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) {
-            let le = stage.scene.light(id).le(&si, si.wo, &stage.slot(lane).lambda);
+            let le = stage.scene.light(id).le(si, si.wo, &stage.slot(lane).lambda);
             stage.add(lane, lane.beta * le);
         }
         if self.max_depth == Some(stage.depth) {
             return;
         }
         let lambda = &mut stage.slots[lane.slot as usize].lambda;
-        let bsdf = stage.scene.material(si.hit.geometry).bsdf(&si, lambda);
+        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, lambda);
         let alpha = match self.termination {
             Termination::Constant(alpha) => alpha,
             Termination::Albedo => (1.0 - albedo(&bsdf, si.wo)).clamp(*ALPHA.start(), *ALPHA.end()),
@@ -76,7 +74,7 @@ impl Estimator for KajiyaIntegrator {
             ..*lane
         };
         if !bsdf.is_delta() {
-            add_delta_lights(stage, &whole, &si, &bsdf, vertex.numbers.light);
+            add_delta_lights(stage, &whole, si, &bsdf, vertex.numbers.light);
         }
         for branch in 0..self.branching {
             let mut next = whole;

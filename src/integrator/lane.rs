@@ -1,6 +1,6 @@
 //! Slots and lanes: the state of a wave.
 
-use crate::geometry::{LANES, Ray, RayCone, RayPacket};
+use crate::geometry::{Ray, RayCone, RayQueue};
 use crate::math::Vec3;
 use crate::sampling::{SampleStream, SolidAnglePdf};
 use crate::spectrum::{SampledSpectrum, Wavelengths};
@@ -58,7 +58,7 @@ impl Lane {
     pub const NO_SLOT: u32 = u32::MAX;
 }
 
-/// Paths of the same number of scattering events, and the rays that they go on by: lane i is ray i % 8 of packet i / 8.
+/// Paths of the same number of scattering events, and the rays that they go on by.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
     /// Scattering events before the rays.
@@ -66,7 +66,7 @@ pub(super) struct Batch {
     /// The paths.
     pub lanes: Vec<Lane>,
     /// Their rays.
-    pub rays: Vec<RayPacket>,
+    pub rays: RayQueue,
 }
 
 impl Batch {
@@ -79,12 +79,7 @@ impl Batch {
     /// Adds a path with a ray that is valid.
     #[inline]
     pub fn push(&mut self, lane: &Lane, ray: &Ray) {
-        let i = self.lanes.len() % LANES;
-        if i == 0 {
-            self.rays.push(RayPacket::EMPTY);
-        }
-        let last = self.rays.len() - 1;
-        self.rays[last].set(i, ray);
+        self.rays.push(ray);
         self.lanes.push(*lane);
     }
 }

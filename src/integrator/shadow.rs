@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::accel::RayKind;
-use crate::geometry::{LANES, Ray, RayPacket, SurfaceInteraction};
+use crate::geometry::{LANES, Ray, RayQueue, SurfaceInteraction};
 use crate::light::LightEnd;
 use crate::math::Vec3;
 use crate::scene::Scene;
@@ -28,7 +28,7 @@ struct Contribution {
 /// Shadow rays and their contributions, in the order in which they were found.
 #[derive(Debug, Default)]
 pub(super) struct ShadowQueue {
-    packets: Vec<RayPacket>,
+    rays: RayQueue,
     contributions: Vec<Contribution>,
 }
 
@@ -36,12 +36,7 @@ impl ShadowQueue {
     /// Adds a ray, which must be valid, that brings `value` to `slot`.
     #[inline]
     pub fn push(&mut self, ray: &Ray, slot: u32, value: SampledSpectrum) {
-        let lane = self.contributions.len() % LANES;
-        if lane == 0 {
-            self.packets.push(RayPacket::EMPTY);
-        }
-        let last = self.packets.len() - 1;
-        self.packets[last].set(lane, ray);
+        self.rays.push(ray);
         self.contributions.push(Contribution { slot, value });
     }
 
@@ -57,14 +52,16 @@ impl ShadowQueue {
             return Duration::ZERO;
         }
         let start = Instant::now();
-        scene.occluded(RayKind::Shadow, &mut self.packets);
+        scene.occluded(RayKind::Shadow, self.rays.packets_mut());
         let elapsed = start.elapsed();
-        for (i, contribution) in self.contributions.iter().enumerate() {
-            if !self.packets[i / LANES].is_occluded(i % LANES) {
-                add(contribution.slot, contribution.value);
+        for (rays, contributions) in self.rays.packets().iter().zip(self.contributions.chunks(LANES)) {
+            for (lane, contribution) in contributions.iter().enumerate() {
+                if !rays.is_occluded(lane) {
+                    add(contribution.slot, contribution.value);
+                }
             }
         }
-        self.packets.clear();
+        self.rays.clear();
         self.contributions.clear();
         elapsed
     }

@@ -6,7 +6,7 @@ use super::lane::{Batch, Lane, Slot};
 use super::numbers::EventNumbers;
 use super::shadow::{ShadowQueue, shadow_ray};
 use super::wave::WAVE_LANES;
-use crate::geometry::{Ray, SurfaceInteraction};
+use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::light::LightSample;
 use crate::scene::Scene;
 use crate::spectrum::SampledSpectrum;
@@ -24,7 +24,9 @@ pub(super) struct Vertex<'a> {
     /// Its ray.
     pub ray: &'a Ray,
     /// What it hit; `None` if it left the scene.
-    pub surface: Option<SurfaceInteraction>,
+    pub surface: Option<&'a SurfaceInteraction>,
+    /// The cone of the ray from there on.
+    pub cone: RayCone,
     /// Random numbers for the scattering event there.
     pub numbers: &'a EventNumbers,
 }

@@ -20,7 +20,7 @@ use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
-use crate::geometry::{HitPacket, LANES, Ray, RayCone};
+use crate::geometry::{HitPacket, LANES, Ray, RayCone, SurfaceLanes};
 use crate::math::{Vec2, Vectorizer};
 use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
@@ -45,6 +45,7 @@ pub(super) struct Wave<'a> {
     /// Batches whose memory can be used again.
     spare: Vec<Batch>,
     hits: Vec<HitPacket>,
+    surfaces: SurfaceLanes,
     shadows: ShadowQueue,
     stats: RenderStats,
 }
@@ -62,6 +63,7 @@ impl<'a> Wave<'a> {
             pending: Vec::new(),
             spare: Vec::new(),
             hits: Vec::new(),
+            surfaces: SurfaceLanes::default(),
             shadows: ShadowQueue::default(),
             stats: RenderStats::default(),
         }
@@ -172,9 +174,12 @@ impl<'a> Wave<'a> {
         } else {
             RayKind::Bounce
         };
-        self.hits.resize(batch.rays.len(), HitPacket::EMPTY);
+        let rays = batch.rays.packets();
+        if self.hits.len() < rays.len() {
+            self.hits.resize(rays.len(), HitPacket::EMPTY);
+        }
         let start = Instant::now();
-        self.scene.intersect(kind, &batch.rays, &mut self.hits);
+        self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
         self.stats.backend_time += start.elapsed();
         if kind == RayKind::Bounce {
             self.stats.bounce_rays += batch.lanes.len() as u64;
@@ -193,27 +198,46 @@ impl<'a> Wave<'a> {
             next: Batch::default(),
         };
         stage.start_batch();
-        for (k, (rays, hits)) in batch.rays.iter().zip(&self.hits).enumerate() {
-            let mates = &batch.lanes[k * LANES..((k + 1) * LANES).min(batch.lanes.len())];
-            let surfaces = self.scene.world().surfaces(self.vectorizer, rays, hits);
+        let packets = batch.rays.packets().iter().zip(&self.hits);
+        for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
+            self.surfaces.fill(self.scene.world(), rays, hits);
             let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
             let numbers = EventLanes::draw(self.vectorizer, &streams, batch.depth);
             for (i, lane) in mates.iter().enumerate() {
                 if lane.slot == Lane::NO_SLOT || !rays.is_active(i) {
                     continue;
                 }
-                let ray = rays.get(i);
-                let surface = hits.get(i).map(|hit| {
-                    let behind = self.scene.interaction_behind(&ray, hit, hits.t[i]);
-                    behind.unwrap_or_else(|| surfaces.get(i, &ray, hit))
-                });
-                let vertex = Vertex {
-                    lane,
-                    ray: &ray,
-                    surface,
-                    numbers: &numbers.get(i),
+                let ray = &rays.get(i);
+                let numbers = &numbers.get(i);
+                let Some(hit) = hits.get(i) else {
+                    let (surface, cone) = (None, lane.cone);
+                    estimator.shade(
+                        &mut stage,
+                        Vertex {
+                            lane,
+                            ray,
+                            surface,
+                            cone,
+                            numbers,
+                        },
+                    );
+                    continue;
                 };
-                estimator.shade(&mut stage, vertex);
+                let behind = self.scene.interaction_behind(ray, hit, hits.t[i]);
+                let mut si = behind.unwrap_or_else(|| self.surfaces.get(self.scene.world(), i, ray, hit));
+                let cone = lane.cone.after(si.p.distance(ray.origin));
+                si.footprint = cone.width;
+                let surface = Some(&si);
+                estimator.shade(
+                    &mut stage,
+                    Vertex {
+                        lane,
+                        ray,
+                        surface,
+                        cone,
+                        numbers,
+                    },
+                );
             }
             stage.limit_shadows(&mut self.stats);
         }

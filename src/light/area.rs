@@ -1,6 +1,5 @@
 //! Surfaces that emit: single triangles, spheres and ellipsoids, at rest or in motion.
 
-use std::borrow::Cow;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -147,24 +146,25 @@ impl AreaLight {
         }
     }
 
-    /// The emitter at a time; `None` if it has no area then.
+    /// What `ask` says of the emitter at a time; `None` if it has no area then.
     #[inline]
-    fn at(&self, time: f32) -> Option<Cow<'_, Emitter>> {
+    fn at<T>(&self, time: f32, ask: impl Fn(&Emitter) -> T) -> Option<T> {
         match &self.motion {
-            None => Some(Cow::Borrowed(&self.emitter)),
-            Some(motion) => motion.at(time).map(Cow::Owned),
+            None => Some(ask(&self.emitter)),
+            Some(motion) => motion.at(time).map(|emitter| ask(&emitter)),
         }
     }
 
     /// Density, by solid angle at `from`, of the point `p` of the light at `time`, where its geometric normal is `ng`.
     #[inline]
     pub fn pdf_li(&self, from: Vec3, p: Vec3, ng: Vec3, time: f32) -> SolidAnglePdf {
-        self.at(time)
-            .map_or(SolidAnglePdf(0.0), |emitter| emitter.pdf(from, p, ng))
+        self.at(time, |emitter| emitter.pdf(from, p, ng))
+            .unwrap_or(SolidAnglePdf(0.0))
     }
 
+    #[inline]
     pub(super) fn sample_li(&self, from: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
-        let sample = self.at(time)?.sample(from, u);
+        let sample = self.at(time, |emitter| emitter.sample(from, u))?;
         let wi = (sample.p - from).try_normalize()?;
         let li = self.le(sample.ng, self.uv(sample.at, time), -wi, lambda);
         // Rays find an invisible light never, and others as often as they do not pass them.
@@ -192,7 +192,7 @@ impl AreaLight {
         };
         let in_world = match (at, &radiance.coordinates) {
             (SamplePlace::Triangle(b), Coordinates::Corners([p, q, r])) => return *p * b.x + *q * b.y + *r * b.z,
-            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) => return Vec2::ZERO,
+            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) | (SamplePlace::Parallelogram, _) => return Vec2::ZERO,
             (SamplePlace::Ellipsoid(outward), _) => return sphere_uv(outward),
             (SamplePlace::Sphere(outward), _) => outward,
         };
@@ -220,7 +220,7 @@ impl AreaLight {
         }
         let bounds = self.emitter.shape.bounds();
         match &self.emitter.shape {
-            EmitterShape::Triangle { ng, .. } => LightBounds {
+            EmitterShape::Triangle { ng, .. } | EmitterShape::Parallelogram { ng, .. } => LightBounds {
                 bounds,
                 axis: *ng,
                 cos_normals: 1.0,

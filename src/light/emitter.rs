@@ -17,6 +17,15 @@ pub enum EmitterShape {
         /// Unit geometric normal, on the side that emits.
         ng: Vec3,
     },
+    /// A parallelogram.
+    Parallelogram {
+        /// One of its corners.
+        corner: Vec3,
+        /// From there to the two next to it.
+        edges: [Vec3; 2],
+        /// Unit geometric normal, on the side that emits.
+        ng: Vec3,
+    },
     /// A sphere.
     Sphere {
         /// Its centre.
@@ -46,6 +55,8 @@ pub(super) struct SurfaceSample {
 pub(super) enum SamplePlace {
     /// Barycentric coordinates.
     Triangle(Vec3),
+    /// Along the two edges.
+    Parallelogram,
     /// Unit direction from the centre of a sphere, in the world.
     Sphere(DVec3),
     /// Unit direction from the centre of an ellipsoid, in object space.
@@ -58,7 +69,7 @@ pub(super) struct Emitter {
     pub shape: EmitterShape,
     /// Of a point chosen uniformly by area; not known of an ellipsoid, where none is.
     uniform: AreaPdf,
-    /// Of a point of a triangle: that of its plane, and the rounding of three weighted corners.
+    /// Of a point of a plane shape: that of its plane, and the rounding of three weighted corners.
     error: f32,
 }
 
@@ -67,7 +78,7 @@ impl Emitter {
     pub fn new(shape: EmitterShape) -> Option<Self> {
         let area = match &shape {
             EmitterShape::Ellipsoid(_) => f32::INFINITY,
-            EmitterShape::Triangle { .. } | EmitterShape::Sphere { .. } => shape.area(),
+            _ => shape.area(),
         };
         (area > 0.0).then(|| Self {
             uniform: AreaPdf(1.0 / area),
@@ -80,7 +91,7 @@ impl Emitter {
     #[inline]
     pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
         match &self.shape {
-            EmitterShape::Triangle { .. } => self.uniform_pdf(from, p, ng),
+            EmitterShape::Triangle { .. } | EmitterShape::Parallelogram { .. } => self.uniform_pdf(from, p, ng),
             EmitterShape::Sphere { center, radius, .. } => match Cone::towards(from, *center, *radius) {
                 Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
                 None => self.uniform_pdf(from, p, ng),
@@ -93,28 +104,37 @@ impl Emitter {
     }
 
     /// The density by solid angle of a point chosen uniformly by area.
+    #[inline]
     fn uniform_pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
         area_to_solid_angle(self.uniform, from, p, ng)
     }
 
     /// A point of the surface for `u` in [0, 1)².
+    #[inline]
     pub fn sample(&self, from: Vec3, u: Vec2) -> SurfaceSample {
         match &self.shape {
-            EmitterShape::Triangle { vertices, ng } => self.sample_triangle(vertices, *ng, from, u),
+            EmitterShape::Triangle { vertices, ng } => {
+                let b = warp::sample_uniform_triangle(u);
+                let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
+                self.uniform_sample(p, *ng, from, SamplePlace::Triangle(b))
+            }
+            EmitterShape::Parallelogram { corner, edges, ng } => {
+                let p = *corner + edges[0] * u.x + edges[1] * u.y;
+                self.uniform_sample(p, *ng, from, SamplePlace::Parallelogram)
+            }
             EmitterShape::Sphere { center, radius, inward } => self.sample_sphere(*center, *radius, *inward, from, u),
             EmitterShape::Ellipsoid(sphere) => sample_ellipsoid(sphere, from, u),
         }
     }
 
-    fn sample_triangle(&self, vertices: &[Vec3; 3], ng: Vec3, from: Vec3, u: Vec2) -> SurfaceSample {
-        let b = warp::sample_uniform_triangle(u);
-        let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
+    #[inline]
+    fn uniform_sample(&self, p: Vec3, ng: Vec3, from: Vec3, at: SamplePlace) -> SurfaceSample {
         SurfaceSample {
             p,
             error: self.error,
             ng,
             pdf: self.uniform_pdf(from, p, ng),
-            at: SamplePlace::Triangle(b),
+            at,
         }
     }
 
@@ -165,6 +185,7 @@ fn ellipsoid_pdf(sphere: &Sphere, outward: DVec3) -> AreaPdf {
     AreaPdf((1.0 / (4.0 * PI * sphere.radius().powi(2) * growth)) as f32)
 }
 
+#[inline]
 fn area_to_solid_angle(pdf: AreaPdf, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
     let to_light = p - from;
     let distance_squared = to_light.length_squared();
@@ -173,11 +194,46 @@ fn area_to_solid_angle(pdf: AreaPdf, from: Vec3, p: Vec3, ng: Vec3) -> SolidAngl
 }
 
 impl EmitterShape {
+    /// Two triangles as the one parallelogram that they make up, as a rectangle of a scene does: one light to choose instead of
+    /// two, and one domain to spread points over. `None` if they do not.
+    pub fn joined(&self, other: &Self) -> Option<Self> {
+        let (
+            Self::Triangle { vertices: a, ng },
+            Self::Triangle {
+                vertices: b,
+                ng: other_ng,
+            },
+        ) = (self, other)
+        else {
+            return None;
+        };
+        // The corner of each that the other does not have, opposite to the edge that they share.
+        let lone = |of: &[Vec3; 3], other: &[Vec3; 3]| {
+            let mut alone = (0..3).filter(|&i| !other.contains(&of[i]));
+            alone.next().filter(|_| alone.next().is_none())
+        };
+        let (i, j) = (lone(a, b)?, lone(b, a)?);
+        let (corner, ends) = (a[i], [a[(i + 1) % 3], a[(i + 2) % 3]]);
+        let edges = ends.map(|end| end - corner);
+        // The two need not be equal to the last bit: the error of a point allows for some roundings.
+        let gap = (ends[0] - b[j] + edges[1]).abs();
+        let largest = a.iter().fold(b[j].abs(), |m, v| m.max(v.abs()));
+        let is_parallelogram = gap.cmple(largest * gamma(3)).all();
+        (is_parallelogram && ng.dot(*other_ng) > 0.99).then_some(Self::Parallelogram { corner, edges, ng: *ng })
+    }
+
     fn error(&self) -> f32 {
+        let plane_error = |vertices: &[Vec3; 3], ng: &Vec3, largest: Vec3| {
+            triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
+        };
         match self {
             Self::Triangle { vertices, ng } => {
-                let largest = vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-                triangle_error(&vertices.map(Vec3::as_dvec3)) as f32 + gamma(8) * ng.abs().dot(largest)
+                plane_error(vertices, ng, vertices.iter().fold(Vec3::ZERO, |m, v| m.max(v.abs())))
+            }
+            Self::Parallelogram { corner, edges, ng } => {
+                let [a, b] = edges.map(|edge| *corner + edge);
+                let largest = [a, b, a + edges[1]].iter().fold(corner.abs(), |m, v| m.max(v.abs()));
+                plane_error(&[*corner, a, b], ng, largest)
             }
             Self::Sphere { .. } | Self::Ellipsoid(_) => 0.0,
         }
@@ -189,6 +245,7 @@ impl EmitterShape {
             Self::Triangle {
                 vertices: [a, b, c], ..
             } => 0.5 * (*b - *a).cross(*c - *a).length(),
+            Self::Parallelogram { edges: [a, b], .. } => a.cross(*b).length(),
             Self::Sphere { radius, .. } => (4.0 * PI * radius * radius) as f32,
             Self::Ellipsoid(sphere) => ellipsoid_area(sphere),
         }
@@ -198,6 +255,10 @@ impl EmitterShape {
     pub fn bounds(&self) -> Bounds3 {
         match self {
             Self::Triangle { vertices, .. } => Bounds3::from_points(*vertices),
+            Self::Parallelogram { corner, edges, .. } => {
+                let [a, b] = edges.map(|edge| *corner + edge);
+                Bounds3::from_points([*corner, a, b, a + edges[1]])
+            }
             Self::Sphere { center, radius, .. } => {
                 let largest = center.abs().max_element() as f32;
                 Bounds3::from_points([center.as_vec3()]).expand(*radius as f32 * (1.0 + gamma(2)) + largest * gamma(1))

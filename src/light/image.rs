@@ -1,9 +1,9 @@
 //! Images that emit.
 
 use crate::math::Vec2;
-use crate::spectrum::{EmissionPixel, RgbEmission, SampledSpectrum, Wavelengths, rgb_luminance};
+use crate::spectrum::{EmissionPixel, RgbEmission, SampledSpectrum, Wavelengths};
 
-/// An image in linear sRGB whose pixels are emission: (1, 1, 1) is D65 with the luminance that a light of spectrum 1 has.
+/// An image whose pixels are emission: (1, 1, 1) is the white of its colour space, with the luminance that a light of spectrum 1 has.
 #[derive(Clone, Debug)]
 pub struct EmissionImage {
     size: [usize; 2],
@@ -22,7 +22,7 @@ impl EmissionImage {
         whole.then(|| Self {
             size: [width, rgb.len() / width],
             pixels: rgb.iter().map(|&pixel| emission.pixel(pixel)).collect(),
-            luminances: rgb.iter().map(|&pixel| rgb_luminance(pixel)).collect(),
+            luminances: rgb.iter().map(|&pixel| emission.luminance(pixel)).collect(),
             emission,
             scale: 1.0,
         })

@@ -144,6 +144,55 @@ pub enum Lobe<'a> {
     Measured(Measured<'a>),
 }
 
+// The commonest lobe is where it is asked for, the others are calls away: together they would push its numbers out of registers.
+impl Lobe<'_> {
+    #[inline(always)]
+    fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<LocalValue> {
+        match self {
+            Self::Diffuse(lobe) => lobe.eval(wo, wi),
+            _ => self.eval_other(wo, wi, mode),
+        }
+    }
+
+    #[inline(never)]
+    fn eval_other(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<LocalValue> {
+        match self {
+            Self::Diffuse(lobe) => lobe.eval(wo, wi),
+            Self::OrenNayar(lobe) => lobe.eval(wo, wi),
+            Self::DiffuseTransmission(lobe) => lobe.eval(wo, wi),
+            Self::ThinDielectric(_) => None,
+            Self::Layered(lobe) => lobe.eval(wo, wi, mode),
+            Self::Principled(lobe) => lobe.eval(wo, wi, mode),
+            Self::Measured(lobe) => lobe.eval(wo, wi),
+            Self::Conductor(lobe) => lobe.eval(wo, wi),
+            Self::Dielectric(lobe) => lobe.eval(wo, wi, mode),
+        }
+    }
+
+    #[inline(always)]
+    fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<LocalSample> {
+        match self {
+            Self::Diffuse(lobe) => lobe.sample_f(wo, u),
+            _ => self.sample_f_other(wo, u_lobe, u, mode),
+        }
+    }
+
+    #[inline(never)]
+    fn sample_f_other(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<LocalSample> {
+        match self {
+            Self::Diffuse(lobe) => lobe.sample_f(wo, u),
+            Self::OrenNayar(lobe) => lobe.sample_f(wo, u),
+            Self::DiffuseTransmission(lobe) => lobe.sample_f(wo, u_lobe, u),
+            Self::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
+            Self::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Self::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Self::Measured(lobe) => lobe.sample_f(wo, u),
+            Self::Conductor(lobe) => lobe.sample_f(wo, u),
+            Self::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+        }
+    }
+}
+
 /// The scattering function at a point of a surface for the wavelengths of a path.
 ///
 /// `f` and `pdf` are functions of their arguments alone. Most lobes have closed forms. Of others `f` is an estimate by a random
@@ -262,17 +311,7 @@ impl<'a> Bsdf<'a> {
         if let Some(sides) = &self.sides {
             (wo, wi) = (sides.seen(wo), sides.seen(wi));
         }
-        let mut value = match &self.lobe {
-            Lobe::Diffuse(lobe) => lobe.eval(wo, wi),
-            Lobe::OrenNayar(lobe) => lobe.eval(wo, wi),
-            Lobe::DiffuseTransmission(lobe) => lobe.eval(wo, wi),
-            Lobe::ThinDielectric(_) => None,
-            Lobe::Layered(lobe) => lobe.eval(wo, wi, mode),
-            Lobe::Principled(lobe) => lobe.eval(wo, wi, mode),
-            Lobe::Measured(lobe) => lobe.eval(wo, wi),
-            Lobe::Conductor(lobe) => lobe.eval(wo, wi),
-            Lobe::Dielectric(lobe) => lobe.eval(wo, wi, mode),
-        }?;
+        let mut value = self.lobe.eval(wo, wi, mode)?;
         if let Some(sides) = &self.sides {
             value.f *= 1.0 / self.share(sides, wo, wi);
             value.pdf /= sides.count(wi);
@@ -310,17 +349,7 @@ impl<'a> Bsdf<'a> {
             other = u_lobe >= 0.5;
             u_lobe = (2.0 * u_lobe).fract();
         }
-        let mut local = match &self.lobe {
-            Lobe::Diffuse(lobe) => lobe.sample_f(wo, u),
-            Lobe::OrenNayar(lobe) => lobe.sample_f(wo, u),
-            Lobe::DiffuseTransmission(lobe) => lobe.sample_f(wo, u_lobe, u),
-            Lobe::ThinDielectric(lobe) => lobe.sample_f(wo, u_lobe),
-            Lobe::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
-            Lobe::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
-            Lobe::Measured(lobe) => lobe.sample_f(wo, u),
-            Lobe::Conductor(lobe) => lobe.sample_f(wo, u),
-            Lobe::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
-        }?;
+        let mut local = self.lobe.sample_f(wo, u_lobe, u, mode)?;
         if local.wi.z == 0.0 || local.value.is_black() {
             return None;
         }

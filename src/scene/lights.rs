@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::shapes::animated;
 use super::spectra::SpectrumCompiler;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind};
+use crate::desc::{AreaLightDesc, LightDesc, LightKind, color_space_of};
 use crate::geometry::{Geometry, Shape, TriangleMesh};
 use crate::image_io::Image;
 use crate::light::{
@@ -15,7 +15,7 @@ use crate::light::{
 };
 use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use crate::sampling::{Cell, SphereMap};
-use crate::spectrum::{ColorMode, CompiledSpectrum, RgbEmission};
+use crate::spectrum::{ColorMode, ColorSpace, CompiledSpectrum, RgbEmission};
 
 /// The lights so far.
 pub(super) struct LightBuilder {
@@ -30,6 +30,7 @@ pub(super) struct LightBuilder {
 struct Pixels {
     rgb: Vec<[f32; 3]>,
     size: [usize; 2],
+    space: ColorSpace,
 }
 
 impl Pixels {
@@ -37,6 +38,7 @@ impl Pixels {
         Ok(Self {
             rgb: image.to_rgb().ok_or("the image has no colour")?,
             size: [image.width(), image.height()],
+            space: color_space_of(image),
         })
     }
 
@@ -70,7 +72,11 @@ impl LightBuilder {
     }
 
     fn image(&self, pixels: &Pixels) -> Result<EmissionImage, String> {
-        let image = EmissionImage::new(&pixels.rgb, pixels.size[0], RgbEmission::new(self.mode));
+        let image = EmissionImage::new(
+            &pixels.rgb,
+            pixels.size[0],
+            RgbEmission::in_space(self.mode, pixels.space),
+        );
         image.ok_or_else(|| "the image has no pixels".to_owned())
     }
 
@@ -167,6 +173,7 @@ impl LightBuilder {
         let rectified = Pixels {
             rgb: rgb.collect(),
             size: [side; 2],
+            space: pixels.space,
         };
         let behind = Behind::Image(self.image(&rectified)?.scaled(factor));
         Ok(EnvironmentLight::Portal(Box::new(PortalEnvironment::new(
@@ -174,7 +181,8 @@ impl LightBuilder {
         ))))
     }
 
-    /// Adds one light for each primitive of a shape that has an area; `motion` moves the shape. The error is a message for the
+    /// Adds the lights that a shape's primitives are, those that have an area: one for each, or for two triangles that are the halves
+    /// of a parallelogram. `motion` moves the shape. The error is a message for the
     /// light's place in the file.
     pub fn add_area(
         &mut self,
@@ -196,8 +204,8 @@ impl LightBuilder {
             return Err("the light is black: it has no luminance to be scaled".to_owned());
         }
         let radiance = self.spectra.emission(desc.l.as_ref());
-        let count = geometry.primitive_count();
-        let add = |primitive| {
+        let joins = image.is_none() && desc.power.is_none() && motion.is_none();
+        let add = |lights: &mut Self, primitive| {
             let (light, coordinates) = emitter(geometry, primitive, motion, &radiance, desc.two_sided)?;
             let light = match &image {
                 Some(image) => light.with_image(Arc::clone(image), coordinates),
@@ -207,9 +215,21 @@ impl LightBuilder {
             let power = desc
                 .power
                 .map_or(1.0, |p| p / (light.sides() * PI * light.area() * mean));
-            Some(self.push(Light::Area(light.scaled(desc.scale * power))))
+            Some(lights.push(Light::Area(light.scaled(desc.scale * power))))
         };
-        Ok((0..count).map(add).collect())
+        let mut lights = Vec::with_capacity(geometry.primitive_count());
+        while lights.len() < geometry.primitive_count() {
+            let first = lights.len();
+            match parallelogram(geometry, first).filter(|_| joins) {
+                Some(shape) => {
+                    let light = AreaLight::new(shape, radiance.clone(), desc.two_sided);
+                    let light = light.map(|light| self.push(Light::Area(light.scaled(desc.scale))));
+                    lights.extend([light; 2]);
+                }
+                None => lights.push(add(self, first)),
+            }
+        }
+        Ok(lights)
     }
 }
 
@@ -228,11 +248,7 @@ fn emitter(
             let light = if motion.is_some() || mesh.is_moving() {
                 AreaLight::moving(moving_triangle(mesh, primitive, moving()), radiance, two_sided)
             } else {
-                let shape = EmitterShape::Triangle {
-                    vertices: mesh.triangle(primitive, 0.0),
-                    ng: mesh.geometric_normal(primitive),
-                };
-                AreaLight::new(shape, radiance, two_sided)
+                AreaLight::new(triangle(mesh, primitive), radiance, two_sided)
             };
             let corners = match mesh.uvs() {
                 Some(uvs) => mesh.indices()[primitive].map(|v| uvs[v as usize]),
@@ -249,6 +265,23 @@ fn emitter(
             };
             Some((light?, Coordinates::Sphere(sphere.object_from_world().matrix3)))
         }
+    }
+}
+
+fn triangle(mesh: &TriangleMesh, triangle: usize) -> EmitterShape {
+    EmitterShape::Triangle {
+        vertices: mesh.triangle(triangle, 0.0),
+        ng: mesh.geometric_normal(triangle),
+    }
+}
+
+/// The shape that a primitive of a mesh at rest and the next one make up, if it is a parallelogram.
+fn parallelogram(geometry: &Geometry, first: usize) -> Option<EmitterShape> {
+    match &geometry.shape {
+        Shape::Mesh(mesh) if !mesh.is_moving() && first + 1 < mesh.triangle_count() => {
+            triangle(mesh, first).joined(&triangle(mesh, first + 1))
+        }
+        Shape::Mesh(_) | Shape::Spheres(_) => None,
     }
 }
 

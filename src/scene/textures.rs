@@ -7,11 +7,12 @@ use super::spectra::SpectrumCompiler;
 use crate::desc::{
     ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, ReliefDesc,
     RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, TextureKind, Textured, WrapDesc,
+    color_space_of,
 };
 use crate::error::Span;
 use crate::material::{Distribution, ReliefMap, Roughness};
 use crate::math::DAffine3;
-use crate::spectrum::{CompiledSpectrum, RgbKind, RgbSampler};
+use crate::spectrum::{ColorSpace, CompiledSpectrum, RgbKind, RgbSampler};
 use crate::texture::{
     Bilerp, Blend, BlendWeight, Filter, FloatTexture, ImageTexture, Mapping2, Marble, MipMap, NoiseKind, NoiseTexture,
     SpectrumTexture, TextureSpace, Wrap,
@@ -208,7 +209,7 @@ impl<'a> TextureCompiler<'a> {
         space: &DAffine3,
         span: Span,
     ) -> SpectrumTexture {
-        let rgb = |kind| RgbSampler::new(self.spectra.mode, kind);
+        let rgb = |kind, space| RgbSampler::new(self.spectra.mode, kind, space);
         match kind {
             TextureKind::Constant(value) => self.compile(value, usage).into(),
             TextureKind::Scale { tex, scale } => match (self.spectrum(tex, usage), self.float(scale)) {
@@ -225,10 +226,11 @@ impl<'a> TextureCompiler<'a> {
                 corners: corners.each_ref().map(|corner| self.compile(corner, usage)),
             })),
             TextureKind::Image(desc) => {
-                let rgb = rgb(match usage {
+                let kind = match usage {
                     SpectrumUse::Albedo => RgbKind::Albedo,
                     SpectrumUse::Unbounded => RgbKind::Unbounded,
-                });
+                };
+                let rgb = rgb(kind, color_space_of(&self.images[desc.image.0 as usize].image));
                 match self.image(desc, space, false) {
                     Some(image) => SpectrumTexture::Image(Arc::new(image), rgb),
                     None => self.compile(&white(span), usage).into(),
@@ -246,7 +248,7 @@ impl<'a> TextureCompiler<'a> {
                     scale: *scale,
                     variation: *variation,
                 };
-                SpectrumTexture::Marble(Arc::new(marble), rgb(RgbKind::Albedo))
+                SpectrumTexture::Marble(Arc::new(marble), rgb(RgbKind::Albedo, ColorSpace::Srgb))
             }
             // Those between two others are not made here, and the rest is of numbers only.
             _ => self.compile(&white(span), usage).into(),

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::cie::{self, DenseTable};
 use super::named;
@@ -25,6 +25,8 @@ struct Space {
     illuminant: Arc<DenseTable>,
     xyz_from_rgb: DMat3,
     rgb_from_xyz: DMat3,
+    /// Rows sum to 1.
+    srgb_reflectance: Mat3,
 }
 
 static SPACES: [LazyLock<Space>; 4] = [
@@ -50,6 +52,14 @@ impl Space {
             illuminant,
             xyz_from_rgb,
             rgb_from_xyz: xyz_from_rgb.inverse(),
+            srgb_reflectance: match space {
+                ColorSpace::Srgb => Mat3::IDENTITY,
+                _ => {
+                    let srgb = ColorSpace::Srgb.rgb_from_xyz() * xyz_from_rgb;
+                    let white = srgb * DVec3::ONE;
+                    (DMat3::from_diagonal(white.recip()) * srgb).as_mat3()
+                }
+            },
         }
     }
 }
@@ -98,6 +108,23 @@ impl ColorSpace {
     /// XYZ of linear RGB: (1, 1, 1) gives the white with Y = 1.
     pub fn rgb_to_xyz(self, rgb: [f64; 3]) -> [f64; 3] {
         (self.xyz_from_rgb() * DVec3::from(rgb)).into()
+    }
+
+    /// Linear sRGB of a reflectance in linear RGB of this space, with the white of one for that of the other: (1, 1, 1) gives (1, 1, 1).
+    pub fn reflectance_to_srgb(self, rgb: [f32; 3]) -> [f32; 3] {
+        (self.space().srgb_reflectance * Vec3::from(rgb)).into()
+    }
+
+    /// The space of these chromaticities (x, y) of red, green, blue and white, each coordinate to a thousandth of its value as in
+    /// pbrt-v4; `None` if it is none of those that have names.
+    pub fn from_chromaticities(chromaticities: [[f32; 2]; 4]) -> Option<Self> {
+        let close = |a: f64, b: f64| a == b || ((a - b) / b).abs() < 1e-3;
+        Self::ALL.into_iter().find(|space| {
+            let [red, green, blue] = space.primaries();
+            let own = [red, green, blue, space.white()].into_iter().flatten();
+            let given = chromaticities.into_iter().flatten().map(f64::from);
+            given.zip(own).all(|(a, b)| close(a, b))
+        })
     }
 
     /// The matrix of [`Self::xyz_to_rgb`].
@@ -186,5 +213,21 @@ mod tests {
             assert!(space.xyz_to_rgb(xyz).iter().all(|c| (c - 1.0).abs() < 1e-5));
         }
         assert_eq!(ColorSpace::from_name("p3"), None);
+    }
+
+    #[test]
+    fn spaces_are_known_by_their_chromaticities() {
+        for space in ColorSpace::ALL {
+            let [red, green, blue] = space.primaries();
+            let rounded = |xy: [f64; 2]| xy.map(|c| (c * 1e4).round() as f32 / 1e4);
+            let given = [red, green, blue, space.white()].map(rounded);
+            assert_eq!(ColorSpace::from_chromaticities(given), Some(space));
+            let mut other = given;
+            other[2][0] += 0.01;
+            assert_eq!(ColorSpace::from_chromaticities(other), None);
+        }
+        // ACEScg.
+        let other = [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044], [0.32168, 0.33767]];
+        assert_eq!(ColorSpace::from_chromaticities(other), None);
     }
 }

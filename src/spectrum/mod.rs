@@ -16,6 +16,8 @@ mod rgb_emission;
 mod sampled;
 mod sensors;
 mod table;
+#[expect(dead_code, reason = "the table of sRGB is made by the build script")]
+mod table_builder;
 mod wavelengths;
 
 pub use color_space::ColorSpace;
@@ -23,7 +25,7 @@ pub use compiled::CompiledSpectrum;
 pub use description::{Outside, Spectrum};
 pub use named::named_spectra;
 pub use rgb::{RgbKind, RgbSampler};
-pub use rgb_emission::{EmissionPixel, RgbEmission, rgb_luminance};
+pub use rgb_emission::{EmissionPixel, RgbEmission};
 pub use sampled::{LANES, SampledSpectrum};
 pub use sensors::{ResponseTable, color_checker, daylight, sensor_curves, sensor_names};
 pub use wavelengths::{LAMBDA_D, LAMBDA_MAX, LAMBDA_MIN, Wavelengths};

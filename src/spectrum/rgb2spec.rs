@@ -102,7 +102,7 @@ pub(super) fn solve(space: ColorSpace, rgb: [f32; 3]) -> SigmoidPolynomial {
 }
 
 /// [`solve`] for some response.
-pub(super) fn solve_with(response: &[(f64, DVec3)], goal: DVec3) -> DVec3 {
+fn solve_with(response: &[(f64, DVec3)], goal: DVec3) -> DVec3 {
     let grey = DVec3::splat(0.5);
     let (mut done, mut step) = (0.0, 1.0_f64);
     let mut coefficients = DVec3::ZERO;
@@ -120,8 +120,44 @@ pub(super) fn solve_with(response: &[(f64, DVec3)], goal: DVec3) -> DVec3 {
     coefficients
 }
 
+/// The polynomial of a colour that some reflectance has, from the solution for a colour nearby.
+pub(super) fn follow(response: &[(f64, DVec3)], goal: DVec3, near: DVec3) -> DVec3 {
+    newton(response, goal, near).unwrap_or_else(|| solve_with(response, goal))
+}
+
+/// The largest coefficients of [`approach`]: such a reflectance goes from 0 to 1 within some 2 nm.
+const STEEPEST: f64 = 100.0;
+
+/// A polynomial whose colour is as near to `goal` as a few steps of Levenberg and Marquardt's method lead from that of a colour nearby:
+/// quick also where no reflectance has the colour.
+pub(super) fn approach(response: &[(f64, DVec3)], goal: DVec3, near: DVec3) -> DVec3 {
+    let mut coefficients = near;
+    let (mut rgb, mut jacobian) = colour(response, coefficients);
+    let mut damping = 1e-6;
+    for _ in 0..16 {
+        let residual = goal - rgb;
+        if residual.abs().max_element() < 1e-6 {
+            break;
+        }
+        let transposed = jacobian.transpose();
+        let square = transposed * jacobian;
+        let diagonal = DVec3::new(square.x_axis.x, square.y_axis.y, square.z_axis.z);
+        let damped = square + DMat3::from_diagonal(diagonal * damping + 1e-15);
+        let step = damped.inverse() * (transposed * residual);
+        let next = (coefficients + step).clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
+        let (next_rgb, next_jacobian) = colour(response, next);
+        if next.is_finite() && (goal - next_rgb).length_squared() < residual.length_squared() {
+            (coefficients, rgb, jacobian) = (next, next_rgb, next_jacobian);
+            damping *= 0.1;
+        } else {
+            damping *= 10.0;
+        }
+    }
+    coefficients
+}
+
 /// Newton's method for one colour; `None` if it does not converge in a few steps.
-pub(super) fn newton(response: &[(f64, DVec3)], goal: DVec3, start: DVec3) -> Option<DVec3> {
+fn newton(response: &[(f64, DVec3)], goal: DVec3, start: DVec3) -> Option<DVec3> {
     let mut coefficients = start;
     for _ in 0..12 {
         let (rgb, jacobian) = colour(response, coefficients);

@@ -2,7 +2,7 @@
 //!
 //! The reflectance behind an rgb illuminant has a largest component of 1/2 (see [`Spectrum::rgb_illuminant`]), so that the sigmoid
 //! polynomials of all colours are functions of two numbers: the ratios of the other components to the largest. They are
-//! tabulated when first needed and interpolated.
+//! tabulated when first needed and interpolated. (Colours of wider spaces than sRGB go by the tables of reflectances.)
 //!
 //! [`Spectrum::rgb_illuminant`]: super::Spectrum::rgb_illuminant
 
@@ -10,15 +10,19 @@ use std::sync::{Arc, LazyLock};
 
 use super::cie::{self, DenseTable};
 use super::rgb2spec::{SigmoidPolynomial, solve};
-use super::{ColorMode, ColorSpace, SampledSpectrum, Wavelengths, named};
+use super::table::wide_polynomial;
+use super::{ColorMode, ColorSpace, SampledSpectrum, Wavelengths};
 
-/// Makes pixels in linear sRGB emit, scaled as lights are: white is D65 with a luminance (times the integral of ȳ) of 1.
+/// Makes pixels in linear RGB of a colour space emit, scaled as lights are: its white has a luminance (times the integral of ȳ) of 1.
 #[derive(Clone, Debug)]
-pub struct RgbEmission(Form);
+pub struct RgbEmission {
+    form: Form,
+    space: ColorSpace,
+}
 
 #[derive(Clone, Debug)]
 enum Form {
-    /// D65 over its photometric integral.
+    /// The white over its photometric integral.
     Spectral(Arc<DenseTable>),
     Rgb,
 }
@@ -28,31 +32,47 @@ enum Form {
 pub struct EmissionPixel([f32; 4]);
 
 impl RgbEmission {
-    /// For a colour mode.
+    /// Of pixels in linear sRGB.
     pub fn new(mode: ColorMode) -> Self {
-        match mode {
-            ColorMode::Rgb => Self(Form::Rgb),
+        Self::in_space(mode, ColorSpace::Srgb)
+    }
+
+    /// Of pixels in linear RGB of a space.
+    pub fn in_space(mode: ColorMode, space: ColorSpace) -> Self {
+        let form = match mode {
+            ColorMode::Rgb => Form::Rgb,
             ColorMode::Spectral => {
-                let d65 = named::d65();
-                let photometric = cie::integrate_y(|nm| d65.at(nm)) as f32;
-                Self(Form::Spectral(Arc::new(DenseTable::from_fn(|nm| {
-                    d65.at(nm) / photometric
-                }))))
+                let white = space.illuminant();
+                let photometric = cie::integrate_y(|nm| white.at(nm)) as f32;
+                Form::Spectral(Arc::new(DenseTable::from_fn(|nm| white.at(nm) / photometric)))
             }
-        }
+        };
+        Self { form, space }
     }
 
     /// Makes a pixel ready; negative components count as 0.
     pub fn pixel(&self, rgb: [f32; 3]) -> EmissionPixel {
         let rgb = rgb.map(|c| c.max(0.0));
-        match &self.0 {
-            Form::Rgb => EmissionPixel([rgb[0], rgb[1], rgb[2], 0.0]),
+        match &self.form {
+            Form::Rgb => {
+                let [r, g, b] = match self.space {
+                    ColorSpace::Srgb => rgb,
+                    // What is outside of the gamut is clipped.
+                    space => cie::xyz_to_srgb(space.rgb_to_xyz(rgb.map(f64::from))).map(|c| c.max(0.0) as f32),
+                };
+                EmissionPixel([r, g, b, 0.0])
+            }
             Form::Spectral(_) => {
                 let largest = rgb[0].max(rgb[1]).max(rgb[2]);
                 if largest == 0.0 {
                     return EmissionPixel::default();
                 }
-                let [a, b, c] = TABLE.coefficients(rgb, largest);
+                let is_grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+                let [a, b, c] = match self.space {
+                    _ if is_grey => [0.0; 3],
+                    ColorSpace::Srgb => TABLE.coefficients(rgb, largest),
+                    space => wide_polynomial(space, rgb.map(|c| 0.5 * c / largest)).coefficients(),
+                };
                 EmissionPixel([a, b, c, 2.0 * largest])
             }
         }
@@ -61,7 +81,7 @@ impl RgbEmission {
     /// The emission of a pixel that [`Self::pixel`] made, at the wavelengths of a path.
     #[inline]
     pub fn sample(&self, pixel: &EmissionPixel, wavelengths: &Wavelengths) -> SampledSpectrum {
-        match &self.0 {
+        match &self.form {
             Form::Rgb => SampledSpectrum(pixel.0),
             Form::Spectral(light) => {
                 let [a, b, c, scale] = pixel.0;
@@ -70,11 +90,11 @@ impl RgbEmission {
             }
         }
     }
-}
 
-/// Luminance of linear sRGB: the photometric value of what a pixel emits.
-pub fn rgb_luminance(rgb: [f32; 3]) -> f32 {
-    cie::srgb_to_xyz(rgb.map(|c| f64::from(c.max(0.0))))[1] as f32
+    /// The luminance of a pixel: the photometric value of what it emits.
+    pub fn luminance(&self, rgb: [f32; 3]) -> f32 {
+        self.space.rgb_to_xyz(rgb.map(|c| f64::from(c.max(0.0))))[1] as f32
+    }
 }
 
 /// Nodes along each ratio.
@@ -190,7 +210,10 @@ mod tests {
             for (seen, c) in cie::xyz_to_srgb(xyz).into_iter().zip(rgb) {
                 worst = worst.max((seen - f64::from(c)).abs() / f64::from(largest));
             }
-            assert!((f64::from(rgb_luminance(rgb)) / xyz[1] - 1.0).abs() < 2e-3, "{rgb:?}");
+            assert!(
+                (f64::from(emission.luminance(rgb)) / xyz[1] - 1.0).abs() < 2e-3,
+                "{rgb:?}"
+            );
         }
         assert!(worst < 2e-3, "{worst}");
     }

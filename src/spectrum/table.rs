@@ -1,34 +1,47 @@
-//! Reflectances of sRGB colours by interpolation in the table that the build script made (`table_builder.rs`, which says how it
-//! is laid out).
+//! Reflectances of rgb colours by interpolation in tables (`table_builder.rs` says how they are laid out). That of sRGB was made by the
+//! build script; those of wider spaces, coarser, are made when they are first needed, which takes some tenths of a second.
 
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use super::rgb2spec::SigmoidPolynomial;
-use super::{SampledSpectrum, Wavelengths};
+use super::{ColorSpace, SampledSpectrum, Wavelengths, table_builder};
 
-/// Nodes along each axis.
-const SIZE: usize = 64;
-
-struct Table {
+/// `SIZE` nodes along each axis.
+struct Table<const SIZE: usize> {
     coefficients: Vec<[f32; 3]>,
     /// Values of the largest component.
     nodes: [f32; SIZE],
 }
 
-static TABLE: LazyLock<Table> = LazyLock::new(|| {
+static TABLE: LazyLock<Table<64>> = LazyLock::new(|| {
     let bytes = include_bytes!(concat!(env!("OUT_DIR"), "/rgb_table.bin"));
     let (words, _) = bytes.as_chunks::<4>();
     let (entries, _) = words.as_chunks::<3>();
-    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    Table {
-        coefficients: entries.iter().map(|entry| entry.map(f32::from_le_bytes)).collect(),
-        nodes: std::array::from_fn(|i| smooth(smooth(i as f32 / (SIZE - 1) as f32))),
-    }
+    Table::new(entries.iter().map(|entry| entry.map(f32::from_le_bytes)).collect())
 });
 
-/// Has the table ready, so that no lookup pays for it.
-pub(super) fn prepare() {
-    LazyLock::force(&TABLE);
+/// Nodes along each axis of the tables of wide spaces.
+const WIDE: usize = 48;
+
+fn wide(space: ColorSpace) -> &'static Table<WIDE> {
+    static TABLES: [OnceLock<Table<WIDE>>; ColorSpace::ALL.len()] = [const { OnceLock::new() }; ColorSpace::ALL.len()];
+    TABLES[space as usize].get_or_init(|| {
+        let coefficients = table_builder::approximate::<WIDE>(space);
+        let (entries, _) = coefficients.as_chunks::<3>();
+        Table::new(entries.to_vec())
+    })
+}
+
+/// Has the table of a space ready, so that no lookup pays for it.
+pub(super) fn prepare(space: ColorSpace) {
+    match space {
+        ColorSpace::Srgb => {
+            LazyLock::force(&TABLE);
+        }
+        _ => {
+            wide(space);
+        }
+    }
 }
 
 /// The reflectance of a colour in linear sRGB, each component in [0, 1], at the wavelengths of a path. Greys are exact.
@@ -40,7 +53,20 @@ pub(super) fn reflectance(rgb: [f32; 3], lambda: &Wavelengths) -> SampledSpectru
     TABLE.polynomial(rgb).sample(lambda)
 }
 
-impl Table {
+/// The polynomial of a colour's reflectance in any space but sRGB, each component in [0, 1], not all equal.
+pub(super) fn wide_polynomial(space: ColorSpace, rgb: [f32; 3]) -> SigmoidPolynomial {
+    wide(space).polynomial(rgb)
+}
+
+impl<const SIZE: usize> Table<SIZE> {
+    fn new(coefficients: Vec<[f32; 3]>) -> Self {
+        let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+        Self {
+            coefficients,
+            nodes: std::array::from_fn(|i| smooth(smooth(i as f32 / (SIZE - 1) as f32))),
+        }
+    }
+
     fn polynomial(&self, rgb: [f32; 3]) -> SigmoidPolynomial {
         let [r, g, b] = rgb;
         let largest = if r > g {
@@ -127,5 +153,39 @@ mod tests {
         }
         let dark = reflectance([1e-7, 0.0, 1e-8], &lambda);
         assert!(dark.max_value() < 1e-5 && dark.min_value() >= 0.0, "{dark:?}");
+    }
+
+    /// The colours of sRGB in the wider spaces.
+    #[test]
+    fn wide_spaces_have_tables() {
+        for space in [ColorSpace::DciP3, ColorSpace::Rec2020, ColorSpace::Aces2065] {
+            let light = space.illuminant();
+            let white = cie::integrate_y(|nm| light.at(nm));
+            let (mut worst, mut sum) = ((0.0, [0.0; 3]), 0.0);
+            for i in 0..1000 {
+                let srgb = [i / 100, i / 10 % 10, i % 10].map(|c| f64::from(c) / 9.0);
+                let rgb = space
+                    .xyz_to_rgb(cie::srgb_to_xyz(srgb))
+                    .map(|c| c.clamp(0.0, 1.0) as f32);
+                if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
+                    continue;
+                }
+                let polynomial = wide_polynomial(space, rgb);
+                let xyz = cie::integrate_xyz(|nm| polynomial.at(nm) * light.at(nm));
+                for (a, b) in space.xyz_to_rgb(xyz).into_iter().zip(rgb) {
+                    let error = (a / white - f64::from(b)).abs();
+                    sum += error;
+                    if error > worst.0 {
+                        worst = (error, rgb);
+                    }
+                }
+            }
+            // The worst are bright: what is a little brighter no reflectance has.
+            assert!(
+                worst.0 < 5e-2 && sum / 3000.0 < 1e-3,
+                "{space:?}: {worst:?}, mean {}",
+                sum / 3000.0
+            );
+        }
     }
 }

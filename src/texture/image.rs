@@ -34,7 +34,7 @@ impl ImageTexture {
         if self.invert { value.max(0.0) } else { value }
     }
 
-    /// The colour in linear sRGB, no component negative.
+    /// The colour in the linear RGB of the image, no component negative.
     pub(super) fn evaluate_rgb(&self, context: &TextureContext) -> [f32; 3] {
         self.lookup(context).max(Vec3::ZERO).into()
     }

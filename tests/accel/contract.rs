@@ -5,7 +5,9 @@ use std::sync::Arc;
 use lucerna::accel::brute::Brute;
 use lucerna::accel::bvh::Bvh;
 use lucerna::accel::{Accel, Backend, BuildOptions, BuildQuality, RayKind};
-use lucerna::geometry::{Geometry, Group, HitPacket, Instance, LANES, Ray, RayPacket, Shape, World, WorldBuilder};
+use lucerna::geometry::{
+    Geometry, Group, HitPacket, Instance, LANES, Ray, RayPacket, RayQueue, Shape, World, WorldBuilder,
+};
 use lucerna::math::{AnimatedTransform, DAffine3, DVec3, Vec3};
 
 use crate::rays::RayMaker;
@@ -65,15 +67,15 @@ fn a_miss_leaves_the_end_of_the_ray_and_occlusion_only_marks_it() {
         ..Ray::new(Vec3::new(-2.0, 0.1, 0.2), Vec3::X, 0.0)
     };
     for (backend, accel) in backends(&world) {
-        let mut packets = Vec::new();
         let longer = Ray { tfar: 1.5, ..ray };
-        RayPacket::pack([ray, longer], &mut packets);
+        let mut queue: RayQueue = [ray, longer].into_iter().collect();
+        let packets = queue.packets_mut();
         let mut hits = vec![HitPacket::EMPTY; 1];
-        accel.intersect(RayKind::Camera, &packets, &mut hits, None);
+        accel.intersect(RayKind::Camera, packets, &mut hits, None);
         assert!(!hits[0].is_hit(0) && hits[0].t[0] == 0.75, "{backend}");
         assert!(hits[0].is_hit(1) && hits[0].t[1] == 1.0, "{backend}");
         let before = packets[0];
-        accel.occluded(RayKind::Shadow, &mut packets, None);
+        accel.occluded(RayKind::Shadow, packets, None);
         assert!(!packets[0].is_occluded(0) && packets[0].is_occluded(1), "{backend}");
         assert!(packets[0].tfar[0] == 0.75 && packets[0].org_x == before.org_x && packets[0].tnear == before.tnear);
     }
@@ -92,11 +94,11 @@ fn an_answer_depends_on_its_packet_mates_only_where_a_backend_says_so() {
         for (backend, accel) in backends(&world) {
             for kind in RayKind::ALL.into_iter().filter(|&kind| accel.is_mate_independent(kind)) {
                 let trace = |rays: &[Ray]| {
-                    let mut packets = Vec::new();
-                    RayPacket::pack(rays.iter().copied(), &mut packets);
+                    let mut queue: RayQueue = rays.iter().copied().collect();
+                    let packets = queue.packets_mut();
                     let mut hits = vec![HitPacket::EMPTY; packets.len()];
-                    accel.intersect(kind, &packets, &mut hits, None);
-                    accel.occluded(kind, &mut packets, None);
+                    accel.intersect(kind, packets, &mut hits, None);
+                    accel.occluded(kind, packets, None);
                     let answer = |i: usize| {
                         let (hits, lane) = (&hits[i / LANES], i % LANES);
                         (

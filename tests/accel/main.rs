@@ -14,7 +14,7 @@ mod worlds;
 use std::sync::Arc;
 
 use lucerna::accel::{Accel, Backend, BuildOptions, HitFilter, RayKind, build, bvh::Bvh};
-use lucerna::geometry::{Hit, HitPacket, LANES, Ray, RayPacket, World};
+use lucerna::geometry::{Hit, HitPacket, LANES, Ray, RayQueue, World};
 
 /// Whether the long tier is asked for.
 fn is_full() -> bool {
@@ -34,10 +34,10 @@ fn backends(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
 
 /// What each ray hits, with the distance.
 fn intersect(accel: &dyn Accel, rays: &[Ray], filter: Option<&dyn HitFilter>) -> Vec<Option<(Hit, f32)>> {
-    let mut packets = Vec::new();
-    RayPacket::pack(rays.iter().copied(), &mut packets);
+    let mut queue: RayQueue = rays.iter().copied().collect();
+    let packets = queue.packets_mut();
     let mut hits = vec![HitPacket::EMPTY; packets.len()];
-    accel.intersect(RayKind::Bounce, &packets, &mut hits, filter);
+    accel.intersect(RayKind::Bounce, packets, &mut hits, filter);
     let answer = |i: usize| {
         hits[i / LANES]
             .get(i % LANES)
@@ -48,9 +48,9 @@ fn intersect(accel: &dyn Accel, rays: &[Ray], filter: Option<&dyn HitFilter>) ->
 
 /// Whether each ray is occluded.
 fn occluded(accel: &dyn Accel, rays: &[Ray], filter: Option<&dyn HitFilter>) -> Vec<bool> {
-    let mut packets = Vec::new();
-    RayPacket::pack(rays.iter().copied(), &mut packets);
-    accel.occluded(RayKind::Shadow, &mut packets, filter);
+    let mut queue: RayQueue = rays.iter().copied().collect();
+    let packets = queue.packets_mut();
+    accel.occluded(RayKind::Shadow, packets, filter);
     (0..rays.len())
         .map(|i| packets[i / LANES].is_occluded(i % LANES))
         .collect()

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lucerna::desc::{LIGHTS, LightKind, SceneDesc, load};
+use lucerna::desc::{ColorSpace, LightKind, SceneDesc, color_space_of, load};
 use lucerna::error::Error;
-use lucerna::image_io::{Image, PendingOutput, Window};
+use lucerna::image_io::{Image, ImageMetadata, PendingOutput, Window};
 
 use crate::STRICT;
 
 /// A directory with images: `square.exr` of 4 x 4 pixels, `wide.exr` of 8 x 4, `odd.exr` of 5 x 4, `nan.exr` with a bad pixel,
 /// `black.exr`.
-fn images() -> tempfile::TempDir {
+pub fn images() -> tempfile::TempDir {
     let directory = tempfile::tempdir().expect("a temporary directory");
     for (name, width, value) in [
         ("square", 4, 0.5),
@@ -34,10 +34,15 @@ fn write(path: &Path, image: &Image) {
     written.expect("a writable directory");
 }
 
-fn read(directory: &tempfile::TempDir, world: &str) -> Result<SceneDesc, Error> {
+/// The scene of a text whose files are in `directory`.
+pub fn load_text(directory: &tempfile::TempDir, text: &str) -> Result<SceneDesc, Error> {
     let path = directory.path().join("scene.pbrt");
-    std::fs::write(&path, format!("WorldBegin\n{world}\n")).expect("a file");
+    std::fs::write(&path, text).expect("a file");
     load(&path, &STRICT)
+}
+
+fn read(directory: &tempfile::TempDir, world: &str) -> Result<SceneDesc, Error> {
+    load_text(directory, &format!("WorldBegin\n{world}\n"))
 }
 
 #[test]
@@ -176,36 +181,47 @@ fn each_bad_value_has_its_error() {
     }
 }
 
-/// The table of lights is what the reader reads by: each of its parameters is known to it, with the type that it states.
+/// What an EXR file says of its primaries and its white counts if it is a space with a name; else the scene is told.
 #[test]
-fn the_table_of_lights_is_true() {
+fn chromaticities_of_images_are_looked_at() {
     let directory = images();
-    for light in &LIGHTS {
-        for parameter in light.parameters {
-            let values = match parameter.kind.type_text() {
-                "float" => "\"float NAME\" 1",
-                "bool" => "\"bool NAME\" true",
-                "string" => "\"string NAME\" \"square.exr\"",
-                "point3" if parameter.name == "portal" => "\"point3 NAME\" [0 0 0  0 1 0  1 1 0  1 0 0]",
-                "point3" => "\"point3 NAME\" [3 1 2]",
-                "rgb | spectrum | blackbody" => "\"blackbody NAME\" 4000",
-                other => panic!("{other}"),
-            };
-            let required = match (light.name, parameter.name) {
-                ("goniometric" | "projection", name) if name != "filename" => "\"string filename\" \"square.exr\"",
-                _ => "",
-            };
-            let values = values.replace("NAME", parameter.name);
-            // A narrow cone would be narrower than its rim.
-            let values = values.replace("coneangle\" 1", "coneangle\" 10");
-            let text = format!("{} \"{}\" {values} {required}", light.directive, light.name);
-            let scene = read(&directory, &text);
-            assert!(
-                scene.is_ok(),
-                "{text}: {}",
-                scene.err().map_or(String::new(), |e| e.to_string())
-            );
-            assert!(!parameter.doc.is_empty() && !parameter.doc.ends_with('.'));
-        }
+    let window = Window::of_size(4, 4);
+    let image = Image::rgb(window, window, vec![0.5; 48]).expect("an image");
+    let write = |name: &str, chromaticities| {
+        let metadata = ImageMetadata {
+            seed: 0,
+            spp: 1,
+            integrator: String::new(),
+            backend: String::new(),
+            version: String::new(),
+            render_seconds: 0.0,
+            scene_hash: String::new(),
+            chromaticities,
+        };
+        let path = directory.path().join(name);
+        let written = PendingOutput::create(&path).and_then(|output| output.commit(&image, Some(&metadata), 0.0));
+        written.expect("a writable directory");
+    };
+    let white = [0.3127, 0.329];
+    write("rec2020.exr", [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], white]);
+    write("other.exr", [[0.7, 0.3], [0.17, 0.797], [0.131, 0.046], white]);
+    for (name, space, warnings) in [
+        ("square.exr", ColorSpace::Srgb, 0),
+        ("rec2020.exr", ColorSpace::Rec2020, 0),
+        ("other.exr", ColorSpace::Srgb, 2),
+    ] {
+        let text = format!(
+            "LightSource \"infinite\" \"string filename\" \"{name}\"\n\
+             Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"{name}\""
+        );
+        let scene = read(&directory, &text).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(color_space_of(&scene.images[0].image), space);
+        let LightKind::Infinite { image: Some(image), .. } = &scene.lights[0].kind else {
+            panic!("{:?}", scene.lights[0].kind)
+        };
+        assert_eq!(color_space_of(image), space);
+        let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
+        assert_eq!(lines, [2, 3][..warnings], "{:?}", scene.warnings);
+        assert!(scene.warnings.iter().all(|w| w.message.contains("sRGB is taken")));
     }
 }

@@ -96,17 +96,6 @@ fn each_bad_value_has_its_own_error() {
     assert!(tried > 150, "{tried}");
 }
 
-/// A kind that the table lists is read, and says so of a parameter that it does not list.
-#[test]
-fn each_kind_is_read() {
-    for material in MATERIALS.iter().filter(|m| m.name != "measured") {
-        scene(&text(material.name, ""));
-        let errors = errors(&text(material.name, "\"float sparkle\" 1"));
-        assert_eq!(errors.len(), 1);
-        assert!(errors[0].message.contains("no parameter `sparkle`"), "{}", errors[0]);
-    }
-}
-
 #[test]
 fn what_excludes_each_other_is_an_error() {
     for (text, part) in [

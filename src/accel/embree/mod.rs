@@ -55,12 +55,14 @@ use self::query::Query;
 use self::scene::Scenes;
 use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
 use crate::error::Result;
-use crate::geometry::{HitPacket, InstanceId, RayPacket, World};
+use crate::geometry::{GeometryId, HitPacket, InstanceId, LANES, RayPacket, World};
 
 /// A world in Embree's trees.
 pub struct EmbreeScene {
     scenes: Scenes,
     world: Arc<World>,
+    /// Whether each geometry at the root has its id for its place there.
+    root_is_in_order: bool,
     device: Arc<Device>,
 }
 
@@ -73,9 +75,11 @@ impl EmbreeScene {
         let device = Device::new(options.threads)?;
         let scenes = scene::build(world, &device, options)?;
         device.check()?;
+        let in_order = |(place, id): (usize, &GeometryId)| place == id.index();
         Ok(Self {
             scenes,
             world: Arc::clone(world),
+            root_is_in_order: world.root().iter().enumerate().all(in_order),
             device,
         })
     }
@@ -94,17 +98,27 @@ impl EmbreeScene {
         }
     }
 
-    /// Embree's (geometry, instance) of a hit as the world's (geometry, instance).
+    /// Makes Embree's ids of geometries and instances those of the world: a geometry is known by its place among the members of
+    /// its group, instances are numbered after the geometries at the root.
     #[inline]
-    fn resolve(&self, geometry: u32, instance: u32) -> (u32, u32) {
-        let (members, instance) = if instance == ffi::EMBREE_INVALID_ID {
-            (self.world.root(), HitPacket::NONE)
-        } else {
-            let id = InstanceId(instance - self.scenes.first_instance);
-            let group = self.world.instance(id).group;
-            (self.world.groups()[group.index()].as_slice(), id.0)
-        };
-        (members[geometry as usize].0, instance)
+    fn resolve(&self, hits: &mut HitPacket) {
+        let has_instances = hits.instance != [HitPacket::NONE; LANES];
+        if !has_instances && self.root_is_in_order {
+            return;
+        }
+        for lane in 0..LANES {
+            if !hits.is_hit(lane) {
+                continue;
+            }
+            let members = if hits.instance[lane] == HitPacket::NONE {
+                self.world.root()
+            } else {
+                hits.instance[lane] -= self.scenes.first_instance;
+                let group = self.world.instance(InstanceId(hits.instance[lane])).group;
+                self.world.groups()[group.index()].as_slice()
+            };
+            hits.geometry[lane] = members[hits.geometry[lane] as usize].0;
+        }
     }
 }
 
@@ -112,7 +126,7 @@ impl Accel for EmbreeScene {
     fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a packet of hits for each packet of rays");
         self.query(kind, filter)
-            .intersect8(rays, hits, |geometry, instance| self.resolve(geometry, instance));
+            .intersect8(rays, hits, |hits| self.resolve(hits));
     }
 
     fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {

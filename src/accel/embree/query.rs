@@ -24,6 +24,9 @@ macro_rules! assert_same_layout {
 }
 assert_same_layout! { org_x org_y org_z tnear dir_x dir_y dir_z time tfar mask id flags }
 
+// "Nothing" is the same number here and there, so that ids of what was not hit need no translation.
+const _: () = assert!(ffi::EMBREE_INVALID_ID == HitPacket::NONE);
+
 /// Packets that go into one call of a stream: their rays, as Embree wants them there, fit the first level cache.
 const STREAM_PACKETS: usize = 32;
 
@@ -56,18 +59,18 @@ pub struct Query<'a> {
 }
 
 impl Query<'_> {
-    /// Nearest hits, in packets of 8. `resolve` turns Embree's (geometry, instance) of a hit into the world's.
-    pub fn intersect8(&self, rays: &[RayPacket], hits: &mut [HitPacket], resolve: impl Fn(u32, u32) -> (u32, u32)) {
+    /// Nearest hits, in packets of 8, with Embree's ids of geometries and instances, which `resolve` makes the world's.
+    pub fn intersect8(&self, rays: &[RayPacket], hits: &mut [HitPacket], resolve: impl Fn(&mut HitPacket)) {
         self.run(|query| {
             // SAFETY: numbers only, for which zero is a value.
             let mut packet: ffi::RTCRayHit8 = unsafe { MaybeUninit::zeroed().assume_init() };
             for (rays, hits) in rays.iter().zip(hits) {
-                *hits = HitPacket {
-                    t: rays.tfar,
-                    ..HitPacket::EMPTY
-                };
                 let valid = Valid::of(rays);
                 if !valid.any() {
+                    *hits = HitPacket {
+                        t: rays.tfar,
+                        ..HitPacket::EMPTY
+                    };
                     continue;
                 }
                 // SAFETY: the layouts are the same, as asserted above, and both are plain numbers.
@@ -76,14 +79,19 @@ impl Query<'_> {
                 packet.hit.instID[0] = [ffi::EMBREE_INVALID_ID; LANES];
                 // SAFETY: the scene is committed; mask, packet and query are live, aligned, and this thread's own.
                 unsafe { ffi::embree_intersect8(valid.0.as_ptr(), self.scene.raw(), query, &raw mut packet) };
-                hits.t = packet.ray.tfar;
+                // Embree leaves the primitive of a miss as it was.
                 let found = &packet.hit;
-                for lane in 0..LANES {
-                    if found.geomID[lane] != ffi::EMBREE_INVALID_ID {
-                        (hits.geometry[lane], hits.instance[lane]) = resolve(found.geomID[lane], found.instID[0][lane]);
-                        hits.primitive[lane] = found.primID[lane];
-                    }
-                }
+                let primitive = std::array::from_fn(|lane| match found.geomID[lane] {
+                    ffi::EMBREE_INVALID_ID => HitPacket::NONE,
+                    _ => found.primID[lane],
+                });
+                *hits = HitPacket {
+                    geometry: packet.hit.geomID,
+                    primitive,
+                    instance: packet.hit.instID[0],
+                    t: packet.ray.tfar,
+                };
+                resolve(hits);
             }
         });
     }

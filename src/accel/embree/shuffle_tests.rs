@@ -6,7 +6,7 @@ use super::EmbreeScene;
 use super::tests::Random;
 use crate::accel::{Accel, BuildOptions, RayKind};
 use crate::geometry::{
-    Geometry, Group, HitPacket, Instance, LANES, Ray, RayPacket, Shape, Sphere, TriangleMesh, WorldBuilder,
+    Geometry, Group, HitPacket, Instance, LANES, Ray, RayQueue, Shape, Sphere, TriangleMesh, WorldBuilder,
 };
 use crate::math::{AnimatedTransform, DAffine3, DQuat, DVec3, Vec3};
 
@@ -94,11 +94,11 @@ fn rays(count: usize) -> Vec<Ray> {
 
 /// (geometry, primitive, instance, bits of t, occluded) for each ray, in the order of `rays`, traced in packets in that order.
 fn trace(scene: &EmbreeScene, kind: RayKind, rays: &[Ray]) -> Vec<(u32, u32, u32, u32, bool)> {
-    let mut packets = Vec::new();
-    RayPacket::pack(rays.iter().copied(), &mut packets);
+    let mut queue: RayQueue = rays.iter().copied().collect();
+    let packets = queue.packets_mut();
     let mut hits = vec![HitPacket::EMPTY; packets.len()];
-    scene.intersect(kind, &packets, &mut hits, None);
-    scene.occluded(kind, &mut packets, None);
+    scene.intersect(kind, packets, &mut hits, None);
+    scene.occluded(kind, packets, None);
     (0..rays.len())
         .map(|i| {
             let (hits, rays, lane) = (&hits[i / LANES], &packets[i / LANES], i % LANES);

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::files::Context;
-use crate::desc::{ImageDesc, ImageId};
+use super::report::Report;
+use crate::desc::{ColorSpace, ImageDesc, ImageId};
 use crate::error::{Error, Span};
 use crate::image_io::{self, Encoding, Image};
 
@@ -45,6 +46,7 @@ pub(super) fn read(pending: &PendingImages, context: &mut Context) -> Vec<ImageD
         match outcome {
             Ok((image, hash)) => {
                 context.count_hash(&hash);
+                check_color_space(&mut context.report, *span, path, &image);
                 images.push(ImageDesc {
                     path: path.clone(),
                     image: Arc::new(image),
@@ -54,6 +56,19 @@ pub(super) fn read(pending: &PendingImages, context: &mut Context) -> Vec<ImageD
         }
     }
     images
+}
+
+/// Says so if the colours of an image are in a space that has no name.
+pub(super) fn check_color_space(report: &mut Report, span: Span, path: &Path, image: &Image) {
+    if let Some(chromaticities) = image.chromaticities()
+        && ColorSpace::from_chromaticities(chromaticities).is_none()
+    {
+        let message = format!(
+            "the chromaticities in {} are of no color space that has a name: sRGB is taken",
+            path.display()
+        );
+        report.warning(span, message);
+    }
 }
 
 /// An image and the hash of its file, or what is wrong.

@@ -1,7 +1,7 @@
 //! `Integrator`. Beside pbrt-v4's parameters there are Lucerna's: see docs/extensions.md.
 
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::integrator_kinds as kinds;
+use crate::desc::kinds::integrators as kinds;
 use crate::desc::{
     Distribution, Heuristic, INTEGRATORS, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc,
     Strategy, Termination,
@@ -34,27 +34,26 @@ pub(super) fn default() -> IntegratorDesc {
 /// Reads an integrator of type `kind`.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
     let span = reader.span;
-    match kind {
-        _ if INTEGRATORS.iter().any(|entry| entry.name == kind) => {}
-        "volpath" => {
+    let entry = INTEGRATORS.iter().find(|entry| entry.name == kind).unwrap_or_else(|| {
+        if kind == "volpath" {
             let message = "`volpath` is taken for `path`, which is the same without participating media";
             reader.report().warning(span, message);
-        }
-        _ => {
+        } else {
             let known: Vec<_> = INTEGRATORS.iter().map(|entry| entry.name).chain(["volpath"]).collect();
             let classes = (&known[..], &LATER[..]);
             unknown_type(reader.report(), "integrator", kind, span, classes, "`path` is used");
         }
-    }
+        &kinds::PATH
+    });
     let max_depth = u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok();
     // The oracle chooses no lights.
-    let (light_sampler, kind) = if kind == "kajiya" {
+    let (light_sampler, kind) = if entry.name == "kajiya" {
         let kajiya = kajiya(&mut reader, max_depth);
         (LightSamplerKind::default(), IntegratorKind::Kajiya(kajiya))
     } else {
         (light_sampler(&mut reader), IntegratorKind::Path(path(&mut reader)))
     };
-    reader.finish();
+    reader.finish_by(entry);
     IntegratorDesc {
         max_depth,
         light_sampler,

@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::images::check_color_space;
 use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
 use super::spectrum::Use;
-use crate::desc::light_kinds::{
-    AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY, LIGHTS,
-    PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
+use crate::desc::kinds::lights::{
+    AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY,
+    IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
 };
 use crate::desc::{
-    AreaLightDesc, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc, SpectrumValue,
+    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
+    SpectrumValue,
 };
 use crate::image_io::{self, Image};
 use crate::sampling::SphereMap;
@@ -20,8 +22,13 @@ use crate::sampling::SphereMap;
 /// Reads a light; none if its type is not known or something essential is wrong with it.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: MotionDesc) -> Option<LightDesc> {
     let span = reader.span;
+    let Some(entry) = of_directive("LightSource").find(|entry| entry.name == kind) else {
+        let known: Vec<_> = of_directive("LightSource").map(|entry| entry.name).collect();
+        unknown_type(reader.report(), "light", kind, span, (&known, &[]), "it is left out");
+        return None;
+    };
     let r = &mut reader;
-    let (kind, spectrum, photometric) = match kind {
+    let (kind, spectrum, photometric) = match entry.name {
         "point" => {
             let from = r.point_by(&FROM);
             (Some(LightKind::Point { from }), r.emission(&INTENSITY), &POWER)
@@ -42,28 +49,16 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: Mo
         "distant" => {
             let (from, to) = from_to(r);
             let kind = LightKind::Distant { from, to };
-            (Some(kind), r.emission(&RADIANCE), &ILLUMINANCE)
-        }
-        "infinite" => {
-            let (kind, spectrum) = infinite(r);
-            (kind, spectrum, &ILLUMINANCE)
+            (Some(kind), r.emission(&IRRADIANCE), &ILLUMINANCE)
         }
         _ => {
-            let span = reader.span;
-            unknown_type(
-                reader.report(),
-                "light",
-                kind,
-                span,
-                (&names("LightSource"), &[]),
-                "it is left out",
-            );
-            return None;
+            let (kind, spectrum) = infinite(r);
+            (Some(kind), spectrum, &ILLUMINANCE)
         }
     };
     let photometric = reader.photometric(photometric);
     let scale = reader.float_by(&SCALE) as f32;
-    reader.finish();
+    reader.finish_by(entry);
     Some(LightDesc {
         span,
         kind: kind?,
@@ -77,8 +72,8 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: Mo
 /// Reads what shapes are to emit; nothing if the type is not known.
 pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaLightDesc> {
     let span = reader.span;
-    if kind != "diffuse" {
-        let known = names("AreaLightSource");
+    let Some(entry) = of_directive("AreaLightSource").find(|entry| entry.name == kind) else {
+        let known: Vec<_> = of_directive("AreaLightSource").map(|entry| entry.name).collect();
         unknown_type(
             reader.report(),
             "area light",
@@ -88,7 +83,7 @@ pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaL
             "nothing emits",
         );
         return None;
-    }
+    };
     let l = reader.emission(&RADIANCE);
     let image = reader.light_image(&AREA_IMAGE, false, |_| None);
     reader.one_of(&RADIANCE, &AREA_IMAGE);
@@ -100,13 +95,12 @@ pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaL
         power: reader.photometric(&POWER),
         two_sided: reader.bool_by(&TWO_SIDED),
     };
-    reader.finish();
+    reader.finish_by(entry);
     Some(light)
 }
 
-fn names(directive: &str) -> Vec<&'static str> {
-    let of_directive = LIGHTS.iter().filter(|light| light.directive == directive);
-    of_directive.map(|light| light.name).collect()
+fn of_directive(directive: &str) -> impl Iterator<Item = &'static Entry> {
+    LIGHTS.iter().filter(move |light| light.directive == directive)
 }
 
 fn from_to(reader: &mut ParamReader<'_>) -> (DVec3, DVec3) {
@@ -129,7 +123,7 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
     LightKind::Spot { from, to, angle, delta }
 }
 
-fn infinite(reader: &mut ParamReader<'_>) -> (Option<LightKind>, Option<SpectrumDesc>) {
+fn infinite(reader: &mut ParamReader<'_>) -> (LightKind, Option<SpectrumDesc>) {
     let spectrum = reader.emission(&RADIANCE);
     let image = reader.light_image(&INFINITE_IMAGE, false, |[width, height]| {
         let known = SphereMap::of_size(width, height).is_some();
@@ -137,7 +131,7 @@ fn infinite(reader: &mut ParamReader<'_>) -> (Option<LightKind>, Option<Spectrum
     });
     reader.one_of(&RADIANCE, &INFINITE_IMAGE);
     let portal = reader.points4(&PORTAL);
-    (Some(LightKind::Infinite { image, portal }), spectrum)
+    (LightKind::Infinite { image, portal }, spectrum)
 }
 
 impl ParamReader<'_> {
@@ -160,7 +154,13 @@ impl ParamReader<'_> {
     /// The spectrum of a light. Unless RGB, it is normalised by its luminance, which must not be 0.
     fn emission(&mut self, parameter: &'static Parameter) -> Option<SpectrumDesc> {
         let name = parameter.name;
-        let spectrum = self.spectrum(name, Use::Emission)?;
+        let given = self.has(name);
+        let Some(spectrum) = self.spectrum(name, Use::Emission) else {
+            // The white of sRGB is what no spectrum stands for.
+            let (space, span) = (self.context.color_space, self.span);
+            let value = SpectrumValue::Rgb([1.0; 3], space);
+            return (!given && space != ColorSpace::Srgb).then_some(SpectrumDesc { value, span });
+        };
         if let SpectrumValue::Samples(samples) = &spectrum.value
             && samples.iter().all(|&(_, value)| value == 0.0)
         {
@@ -232,10 +232,16 @@ impl ParamReader<'_> {
             )),
             None => Ok(image),
         });
-        refused
-            .map(Arc::new)
-            .map_err(|message| self.report().error(span, message))
-            .ok()
+        match refused {
+            Ok(image) => {
+                check_color_space(self.report(), span, &path, &image);
+                Some(Arc::new(image))
+            }
+            Err(message) => {
+                self.report().error(span, message);
+                None
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
 use super::world::{Materials, default_material};
-use crate::desc::material_kinds as kinds;
+use crate::desc::kinds::materials as kinds;
 use crate::desc::{
     CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, MeasuredDesc,
     Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
@@ -43,12 +43,9 @@ pub(super) fn read(
         return unknown(reader, kind, span);
     };
     let kind = read_kind(&mut reader, materials, entry.name);
-    let can_have_relief = entry
-        .parameters
-        .iter()
-        .any(|parameter| parameter.name == kinds::DISPLACEMENT.name);
+    let can_have_relief = entry.has(kinds::DISPLACEMENT.name);
     let relief = if can_have_relief { relief(&mut reader) } else { None };
-    reader.finish();
+    reader.finish_by(entry);
     kind.map(|kind| MaterialDesc {
         name: None,
         kind,

@@ -154,8 +154,8 @@ impl Options {
 pub(super) fn render_option(report: &mut Report, name: &str, value: &str, span: Span) {
     const INERT: [(&str, &str); 7] = [
         ("seed", "give the seed on the command line, by --seed"),
-        ("disabletexturefiltering", "there are no textures yet"),
-        ("displacementedgescale", "there is no displacement yet"),
+        ("disabletexturefiltering", "textures are always filtered as they say"),
+        ("displacementedgescale", "displacements bend normals, not surfaces"),
         ("msereferenceimage", "see `lucerna compare`"),
         ("msereferenceout", "see `lucerna compare`"),
         ("pixelstats", "see --stats"),

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::files::Context;
 use super::params::{Param, ParamType, Values, value_span};
 use super::report::Report;
-use crate::desc::TextureId;
+use crate::desc::{Entry, Parameter, TextureId};
 use crate::error::Span;
 
 /// The parameters of one entity, being read.
@@ -239,6 +239,13 @@ impl<'a> ParamReader<'a> {
         }
     }
 
+    /// Those that a table says have no effect.
+    pub fn inert_by(&mut self, parameters: &[&'static Parameter]) {
+        for parameter in parameters {
+            self.inert(&[(parameter.name, parameter.doc)]);
+        }
+    }
+
     /// Parameters that pbrt has and that would change the image, but are not supported.
     pub fn unsupported(&mut self, names: &[&'static str]) {
         for &name in names {
@@ -261,6 +268,14 @@ impl<'a> ParamReader<'a> {
             }
         }
         spans
+    }
+
+    /// As [`ParamReader::finish`], of an entity that is in a table: all that has been asked for is there.
+    pub fn finish_by(self, entry: &Entry) {
+        // A named material says besides what it is.
+        let missing = self.known.iter().find(|&&name| !entry.has(name) && name != "type");
+        debug_assert!(missing.is_none(), "{} lacks `{missing:?}` in its table", self.entity);
+        self.finish();
     }
 
     /// Complains about what nobody asked for.

@@ -1,7 +1,7 @@
 //! `Sampler`.
 
 use super::reader::{ParamReader, unknown_type};
-use crate::desc::sampler_kinds as kinds;
+use crate::desc::kinds::samplers as kinds;
 use crate::desc::{SAMPLERS, SamplerDesc, SamplerKind};
 use crate::sampling::Strata;
 
@@ -22,22 +22,22 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
             reader.report().warning(span, message);
             "zsobol"
         }
-        _ if SAMPLERS.iter().any(|entry| entry.name == kind) => kind,
-        _ => {
-            let known: Vec<_> = SAMPLERS.iter().map(|entry| entry.name).chain(REPLACED).collect();
-            unknown_type(
-                reader.report(),
-                "sampler",
-                kind,
-                span,
-                (&known, &[]),
-                "`zsobol` is used",
-            );
-            "zsobol"
-        }
+        _ => kind,
     };
+    let entry = SAMPLERS.iter().find(|entry| entry.name == kind).unwrap_or_else(|| {
+        let known: Vec<_> = SAMPLERS.iter().map(|entry| entry.name).chain(REPLACED).collect();
+        unknown_type(
+            reader.report(),
+            "sampler",
+            kind,
+            span,
+            (&known, &[]),
+            "`zsobol` is used",
+        );
+        &kinds::Z_SOBOL
+    });
     let samples = |reader: &mut ParamReader<'_>, by| reader.integer_by(by).unsigned_abs();
-    let (kind, pixel_samples) = match kind {
+    let (kind, pixel_samples) = match entry.name {
         "independent" => (
             SamplerKind::Independent,
             samples(&mut reader, &kinds::INDEPENDENT_SAMPLES),
@@ -52,11 +52,8 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
         "sobol" => (SamplerKind::Sobol, samples(&mut reader, &kinds::PIXEL_SAMPLES)),
         _ => (SamplerKind::ZSobol, samples(&mut reader, &kinds::PIXEL_SAMPLES)),
     };
-    reader.inert(&[
-        ("randomization", "points are always Owen-scrambled"),
-        ("seed", "give the seed on the command line, by --seed"),
-    ]);
-    reader.finish();
+    reader.inert_by(&[&kinds::RANDOMIZATION, &kinds::SEED]);
+    reader.finish_by(entry);
     SamplerDesc { kind, pixel_samples }
 }
 

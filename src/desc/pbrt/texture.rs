@@ -4,9 +4,9 @@ use glam::{DAffine3, DVec3, Vec2};
 
 use super::reader::{ParamReader, unknown_type};
 use super::texture_names::stand_in;
-use crate::desc::texture_kinds as kinds;
+use crate::desc::kinds::textures as kinds;
 use crate::desc::{
-    ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, Parameter, SpectrumDesc, TEXTURES,
+    ClassedTexture, Entry, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, Parameter, SpectrumDesc, TEXTURES,
     TextureClass, TextureDesc, TextureKind, Textured, WrapDesc,
 };
 
@@ -45,11 +45,12 @@ pub(super) fn read(
     world_from_texture: DAffine3,
 ) {
     let span = reader.span;
-    let kind = match class {
-        TextureClass::Float => read_kind(&mut reader, class, kind).map(ClassedTexture::Float),
-        TextureClass::Spectrum => read_kind(&mut reader, class, kind).map(ClassedTexture::Spectrum),
-    };
-    let is_known = kind.is_some();
+    let entry = entry(&mut reader, class, kind);
+    let kind = entry.and_then(|entry| match class {
+        TextureClass::Float => read_kind(&mut reader, entry).map(ClassedTexture::Float),
+        TextureClass::Spectrum => read_kind(&mut reader, entry).map(ClassedTexture::Spectrum),
+    });
+    let known = entry.filter(|_| kind.is_some());
     let depth = deepest(&mut reader);
     let texture = TextureDesc {
         name,
@@ -60,8 +61,8 @@ pub(super) fn read(
         span,
     };
     reader.context.textures.define(class, texture, depth.unwrap_or(0));
-    if is_known {
-        reader.finish();
+    if let Some(entry) = known {
+        reader.finish_by(entry);
     }
 }
 
@@ -87,13 +88,13 @@ fn deepest(reader: &mut ParamReader<'_>) -> Option<u32> {
     deepest
 }
 
-/// Reads a kind of texture; `None`, having said so, if there is no such kind in this class.
-fn read_kind<V: Value>(reader: &mut ParamReader<'_>, class: TextureClass, kind: &str) -> Option<TextureKind<V>> {
-    let entry = TEXTURES.iter().find(|entry| entry.name == kind);
-    if !entry.is_some_and(|entry| entry.classes.contains(&class)) {
+/// The kind of texture of this name; `None`, having said so, if there is none in this class.
+fn entry(reader: &mut ParamReader<'_>, class: TextureClass, kind: &str) -> Option<&'static Entry> {
+    let of_class = || TEXTURES.iter().filter(|entry| entry.classes.contains(&class));
+    let entry = of_class().find(|entry| entry.name == kind);
+    if entry.is_none() {
         let span = reader.span;
-        let of_class = TEXTURES.iter().filter(|entry| entry.classes.contains(&class));
-        let known: Vec<&str> = of_class.map(|entry| entry.name).collect();
+        let known: Vec<&str> = of_class().map(|entry| entry.name).collect();
         let what = format!("{} texture", class.name());
         unknown_type(
             reader.report(),
@@ -103,9 +104,13 @@ fn read_kind<V: Value>(reader: &mut ParamReader<'_>, class: TextureClass, kind: 
             (&known, &["ptex"]),
             "a constant stands in",
         );
-        return None;
     }
-    Some(match kind {
+    entry
+}
+
+/// Reads a kind of texture; `None`, having said so, if something essential is missing.
+fn read_kind<V: Value>(reader: &mut ParamReader<'_>, entry: &Entry) -> Option<TextureKind<V>> {
+    Some(match entry.name {
         "scale" => TextureKind::Scale {
             tex: V::textured(reader, &kinds::TEX),
             scale: reader.float_textured_by(&kinds::SCALE_BY),

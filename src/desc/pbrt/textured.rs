@@ -6,7 +6,9 @@ use super::params::{Param, ParamType, Values, value_span};
 use super::reader::ParamReader;
 use super::spectrum::Use;
 use super::suggest;
-use crate::desc::{ImageId, Parameter, ParameterKind, SpectrumDesc, SpectrumValue, TextureClass, TextureId, Textured};
+use crate::desc::{
+    ImageId, Parameter, ParameterDefault, ParameterKind, SpectrumDesc, SpectrumValue, TextureClass, TextureId, Textured,
+};
 use crate::error::Span;
 use crate::image_io::Encoding;
 
@@ -110,8 +112,11 @@ impl ParamReader<'_> {
 
     /// The encoding of an image's samples by its table.
     pub fn encoding_by(&mut self, parameter: &'static Parameter) -> Encoding {
-        let Some((name, span)) = self.string(parameter.name) else {
+        let ParameterKind::Encoding { default } = parameter.kind else {
             return Encoding::Srgb;
+        };
+        let Some((name, span)) = self.string(parameter.name) else {
+            return default;
         };
         Encoding::from_name(&name).unwrap_or_else(|| {
             let message = format!(
@@ -119,7 +124,7 @@ impl ParamReader<'_> {
                 parameter.name
             );
             self.report().error(span, message);
-            Encoding::Srgb
+            default
         })
     }
 
@@ -152,9 +157,10 @@ impl ParamReader<'_> {
             ParameterKind::FloatTextured { default } | ParameterKind::Textured { default } => self
                 .float_textured(parameter.name)
                 .unwrap_or(Textured::Value(default as f32)),
-            ParameterKind::FloatTexturedIn { default, .. } => {
-                self.float_textured_or(parameter, Textured::Value(default.unwrap_or_default() as f32))
-            }
+            ParameterKind::FloatTexturedIn {
+                default: ParameterDefault::Number(default),
+                ..
+            } => self.float_textured_or(parameter, Textured::Value(default as f32)),
             _ => Textured::Value(0.0),
         }
     }

@@ -1,6 +1,8 @@
 //! Parameters as the reader knows them: name, type, range, default and meaning of each in one place, which the reader reads its
 //! values by and `lucerna list` prints.
 
+use crate::image_io::Encoding;
+
 /// A parameter of a kind of entity.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
@@ -8,8 +10,56 @@ pub struct Parameter {
     pub name: &'static str,
     /// What values it takes.
     pub kind: ParameterKind,
-    /// What it does, in a sentence without a full stop; units included.
+    /// The unit of its numbers; empty if they are pure numbers, colours or words.
+    pub unit: &'static str,
+    /// What it does, in a sentence without a full stop.
     pub doc: &'static str,
+}
+
+impl Parameter {
+    pub(super) const fn new(name: &'static str, kind: ParameterKind, doc: &'static str) -> Self {
+        let unit = "";
+        Self { name, kind, unit, doc }
+    }
+
+    pub(super) const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    pub(super) const fn float(name: &'static str, default: f64, range: FloatRange, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Float { default, range }, doc)
+    }
+
+    pub(super) const fn integer(name: &'static str, default: i32, range: (i32, i32), doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Integer { default, range }, doc)
+    }
+
+    pub(super) const fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Bool(default), doc)
+    }
+
+    /// One of a few words, the first by default.
+    pub(super) const fn choice(name: &'static str, choices: &'static [&'static str], doc: &'static str) -> Self {
+        let default = choices[0];
+        Self::new(name, ParameterKind::Choice { default, choices }, doc)
+    }
+
+    pub(super) const fn file(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::File, doc)
+    }
+
+    pub(super) const fn value(name: &'static str, default: f64, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Value { default }, doc)
+    }
+
+    pub(super) const fn textured(name: &'static str, default: f64, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Textured { default }, doc)
+    }
+
+    /// One of pbrt's that changes nothing here; `doc` says why.
+    pub(super) const fn inert(name: &'static str, r#type: &'static str, doc: &'static str) -> Self {
+        Self::new(name, ParameterKind::Inert(r#type), doc)
+    }
 }
 
 /// What values a parameter takes, and which one stands in where none is given.
@@ -48,10 +98,10 @@ pub enum ParameterKind {
         /// All of them.
         choices: &'static [&'static str],
     },
-    /// `string`: free text, of which the meaning is in the doc.
-    Text {
+    /// `string`: the curve of an image's integer samples.
+    Encoding {
         /// If none is given.
-        default: &'static str,
+        default: Encoding,
     },
     /// `string`: the name of a file; there is no default.
     File,
@@ -72,8 +122,8 @@ pub enum ParameterKind {
     },
     /// As [`ParameterKind::FloatTextured`], where a plain number is limited.
     FloatTexturedIn {
-        /// If none is given; if that is none, the value of a more general parameter.
-        default: Option<f64>,
+        /// If none is given.
+        default: ParameterDefault,
         /// What is allowed.
         range: FloatRange,
     },
@@ -99,6 +149,17 @@ pub enum ParameterKind {
     },
     /// `string`: the names of two named materials; there is no default.
     TwoMaterials,
+    /// A parameter of pbrt's, of this type, that has no effect; not more than its presence is looked at.
+    Inert(&'static str),
+}
+
+/// What stands in for a number that is not given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterDefault {
+    /// A number.
+    Number(f64),
+    /// The value of the parameter of this name.
+    Of(&'static str),
 }
 
 /// Which numbers are allowed.
@@ -157,21 +218,25 @@ impl FloatRange {
 }
 
 impl ParameterKind {
-    /// The type, as a scene file writes it.
-    pub fn type_text(&self) -> &'static str {
+    /// The types that a scene file may give it. Of `float` and those of spectra, a [`ParameterKind::Value`] and a
+    /// [`ParameterKind::Textured`] take those of the texture's class.
+    pub fn types(&self) -> &[&'static str] {
         match self {
-            Self::Bool(_) => "bool",
-            Self::Integer { .. } => "integer",
-            Self::Float { .. } | Self::Photometric => "float",
-            Self::Vector(_) => "vector3",
-            Self::Point(_) | Self::Points(_) => "point3",
-            Self::Emission => "rgb | spectrum | blackbody",
-            Self::Choice { .. } | Self::Text { .. } | Self::File | Self::TwoMaterials => "string",
-            Self::Value { .. } => "float | spectrum",
-            Self::Textured { .. } => "float | spectrum | texture",
-            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } => "float | texture",
-            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } => "spectrum | texture",
-            Self::GlassIndex { .. } => "float | spectrum",
+            Self::Bool(_) => &["bool"],
+            Self::Integer { .. } => &["integer"],
+            Self::Float { .. } | Self::Photometric => &["float"],
+            Self::Vector(_) => &["vector3"],
+            Self::Point(_) | Self::Points(_) => &["point3"],
+            Self::Emission => &["rgb", "spectrum", "blackbody"],
+            Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::TwoMaterials => &["string"],
+            Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
+            Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
+            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } => &["float", "texture"],
+            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } => {
+                &["rgb", "spectrum", "blackbody", "texture"]
+            }
+            Self::GlassIndex { .. } => &["float", "spectrum"],
+            Self::Inert(name) => std::slice::from_ref(name),
         }
     }
 
@@ -187,16 +252,14 @@ impl ParameterKind {
             Self::MetalAbsorption { .. } => FloatRange::NotNegative.text().to_owned(),
             Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
-            Self::Text { .. } => "see there".to_owned(),
+            Self::Encoding { .. } => "sRGB, linear, \"gamma G\" with G more than 0".to_owned(),
+            Self::Inert(_) => "any; it has no effect".to_owned(),
             Self::File => "a file".to_owned(),
             Self::Points(count) => format!("{count} points"),
             Self::Emission => "0 or more".to_owned(),
             Self::Photometric => "positive".to_owned(),
-            Self::Vector(_)
-            | Self::Point(_)
-            | Self::Value { .. }
-            | Self::Textured { .. }
-            | Self::FloatTextured { .. } => "finite".to_owned(),
+            Self::Vector(_) | Self::Point(_) | Self::FloatTextured { .. } => "finite".to_owned(),
+            Self::Value { .. } | Self::Textured { .. } => "finite; of a spectrum 0 or more".to_owned(),
         }
     }
 
@@ -210,14 +273,17 @@ impl ParameterKind {
             | Self::Textured { default }
             | Self::FloatTextured { default }
             | Self::GlassIndex { default } => default.to_string(),
-            Self::FloatTexturedIn { default, .. } | Self::Reflectance { default } => {
-                default.map_or(String::new(), |default| default.to_string())
-            }
+            Self::FloatTexturedIn { default, .. } => match default {
+                ParameterDefault::Number(default) => default.to_string(),
+                ParameterDefault::Of(name) => format!("that of {name}"),
+            },
+            Self::Reflectance { default } => default.map_or(String::new(), |default| default.to_string()),
+            Self::Encoding { default } => default.to_string(),
             Self::MetalIndex { default } | Self::MetalAbsorption { default } => (*default).to_owned(),
             Self::Vector([x, y, z]) | Self::Point([x, y, z]) => format!("[ {x} {y} {z} ]"),
-            Self::Choice { default, .. } | Self::Text { default } => (*default).to_owned(),
+            Self::Choice { default, .. } => (*default).to_owned(),
             Self::Emission => "the colour space's illuminant".to_owned(),
-            Self::File | Self::TwoMaterials | Self::Points(_) | Self::Photometric => String::new(),
+            Self::File | Self::TwoMaterials | Self::Points(_) | Self::Photometric | Self::Inert(_) => String::new(),
         }
     }
 }

@@ -1,188 +1,56 @@
-//! A body under a dielectric coat, with a scattering medium between them or none, as in pbrt-v4: light that enters the coat is
-//! followed by a random walk until it leaves (Guo, Hašan, Zhao 2018, "Position-Free Monte Carlo Simulation for Arbitrary Layered
-//! BSDFs").
-//!
-//! Values are estimates by walks whose numbers are a hash of the directions.
+//! Walks between the layers: flights, events, and the connections of a walk to a direction outside.
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
-use super::argument_random::ArgumentRandom;
-use super::{Conductor, Density, Dielectric, Diffuse, LocalSample, LocalValue, TransportMode, refract};
-use crate::math::{Frame, Vec2, Vec3};
+use super::{Interlayer, Layered};
+use crate::material::argument_random::ArgumentRandom;
+use crate::material::{Density, LocalSample, TransportMode};
+use crate::math::{Frame, Vec3};
 use crate::sampling::power_heuristic;
 use crate::spectrum::SampledSpectrum;
 
-/// What is under the coat.
-#[derive(Clone, Copy, Debug)]
-pub enum Body {
-    /// Lambertian.
-    Diffuse(Diffuse),
-    /// A metal; its index is relative to the coat.
-    Conductor(Conductor),
-}
-
-/// What lies between coat and body, and how it is estimated; pbrt-v4's parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interlayer {
-    /// Distance in mean free paths, not negative: the medium has an extinction of 1.
-    pub thickness: f32,
-    /// The share of that which is scattered; in [0, 1].
-    pub albedo: SampledSpectrum,
-    /// Henyey and Greenstein's asymmetry, in (-1, 1).
-    pub g: f32,
-    /// Most events of a walk.
-    pub max_depth: u32,
-    /// Walks a value is the mean of, at least 1.
-    pub samples: u32,
-}
-
-/// A coated body, the same from both sides.
-#[derive(Clone, Copy, Debug)]
-pub struct Layered {
-    coat: Dielectric,
-    body: Body,
-    interlayer: Interlayer,
-}
-
 /// A walk: where it is, where it goes, what it carries. The coat is at `thickness`, the body at 0.
-struct Walk {
-    z: f32,
-    w: Vec3,
-    beta: SampledSpectrum,
+pub(super) struct Walk {
+    pub(super) z: f32,
+    pub(super) w: Vec3,
+    pub(super) beta: SampledSpectrum,
 }
 
 /// Where a flight between the layers ends.
-enum Flight {
+pub(super) enum Flight {
     Coat,
     Body,
     Medium,
 }
 
-/// The share of densities that covers what the guess of single bounces misses.
-const SPREAD: f32 = 0.1;
-
-impl Body {
-    fn is_delta(&self) -> bool {
-        match self {
-            Self::Diffuse(_) => false,
-            Self::Conductor(metal) => metal.is_delta(),
-        }
+impl Walk {
+    fn turn(&mut self, next: &LocalSample) {
+        self.beta *= next.weight();
+        self.w = next.wi;
     }
 
-    /// The reflectance of a mirror for a direction; `None` of anything else.
-    fn mirror_reflectance(&self, w: Vec3) -> Option<SampledSpectrum> {
-        match self {
-            Self::Conductor(metal) if metal.is_delta() => Some(metal.fresnel(w.z.abs())),
-            Self::Diffuse(_) | Self::Conductor(_) => None,
+    /// Russian roulette, as in pbrt-v4.
+    pub(super) fn survive(&mut self, depth: u32, random: &mut ArgumentRandom) -> Option<()> {
+        let most = self.beta.max_value();
+        if depth > 3 && most < 0.25 {
+            if random.unit() >= most {
+                return None;
+            }
+            self.beta *= 1.0 / most;
         }
-    }
-
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
-        match self {
-            Self::Diffuse(lobe) => lobe.eval(wo, wi),
-            Self::Conductor(lobe) => lobe.eval(wo, wi),
-        }
-    }
-
-    fn sample_f(&self, wo: Vec3, u: Vec2) -> Option<LocalSample> {
-        match self {
-            Self::Diffuse(lobe) => lobe.sample_f(wo, u),
-            Self::Conductor(lobe) => lobe.sample_f(wo, u),
-        }
+        Some(())
     }
 }
 
 impl Layered {
-    /// A `body` under a `coat`.
-    pub fn new(coat: Dielectric, body: Body, interlayer: Interlayer) -> Self {
-        Self { coat, body, interlayer }
-    }
-
-    /// Whether it is a coated mirror.
-    pub fn is_delta(&self) -> bool {
-        self.coat.is_delta() && self.body.is_delta() && self.interlayer.albedo.is_black()
-    }
-
-    /// Whether light is reflected by a smooth coat.
-    pub fn has_delta(&self) -> bool {
-        self.coat.is_delta()
-    }
-
-    /// See [`Bsdf::eval`](super::Bsdf::eval).
-    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<LocalValue> {
-        if wo.z * wi.z <= 0.0 || self.is_delta() {
-            return None;
-        }
-        let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
-        let mut random = ArgumentRandom::of_directions(wo, wi);
-        let samples = self.interlayer.samples;
-        let walks: SampledSpectrum = (0..samples).map(|_| self.estimate(wo, wi, mode, &mut random)).sum();
-        let coat = self
-            .coat
-            .eval(wo, wi, mode)
-            .map_or(SampledSpectrum::ZERO, |value| value.f);
-        Some(LocalValue {
-            f: coat + walks * (1.0 / samples as f32),
-            pdf: self.density(wo, wi),
-        })
-    }
-
-    /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
-    pub fn sample_f(&self, wo: Vec3, u_lobe: f32, u: Vec2, mode: TransportMode) -> Option<LocalSample> {
-        let flip = if wo.z < 0.0 { -1.0 } else { 1.0 };
-        let wo = wo * flip;
-        let entered = self.coat.sample_f(wo, u_lobe, u, mode)?;
-        if entered.wi.z > 0.0 {
-            return match entered.density {
-                Density::Delta(_) => Some(LocalSample {
-                    wi: entered.wi * flip,
-                    ..entered
-                }),
-                Density::Continuous(_) => self.leaving(wo, entered.wi, entered.weight(), flip),
-            };
-        }
-        let mut random = ArgumentRandom::of_sample(wo, u_lobe, u);
-        let mut specular = matches!(entered.density, Density::Delta(_));
-        let mut walk = Walk {
-            z: self.interlayer.thickness,
-            w: entered.wi,
-            beta: entered.weight(),
-        };
-        for depth in 0..self.interlayer.max_depth {
-            walk.survive(depth, &mut random)?;
-            let next = match self.fly(&mut walk, &mut random)? {
-                Flight::Medium => {
-                    self.scatter_in_medium(&mut walk, &mut random);
-                    specular = false;
-                    continue;
-                }
-                Flight::Coat => self.coat.sample_f(-walk.w, random.unit(), random.pair(), mode)?,
-                Flight::Body => self.body.sample_f(-walk.w, random.pair())?,
-            };
-            walk.beta *= next.weight();
-            specular &= matches!(next.density, Density::Delta(_));
-            if walk.w.z > 0.0 && next.wi.z > 0.0 {
-                if specular {
-                    return Some(LocalSample {
-                        value: walk.beta,
-                        wi: next.wi * flip,
-                        density: Density::Delta(1.0),
-                        eta: 1.0,
-                    });
-                }
-                return self.leaving(wo, next.wi, walk.beta, flip);
-            }
-            walk.w = next.wi;
-        }
-        None
-    }
-
-    fn leaving(&self, wo: Vec3, wi: Vec3, weight: SampledSpectrum, flip: f32) -> Option<LocalSample> {
-        LocalSample::weighted(weight, self.density(wo, wi), wi * flip, 1.0)
-    }
-
     /// One walk from `wo`, connected to `wi` through the coat wherever it scatters (both above).
-    fn estimate(&self, wo: Vec3, wi: Vec3, mode: TransportMode, random: &mut ArgumentRandom) -> SampledSpectrum {
+    pub(super) fn estimate(
+        &self,
+        wo: Vec3,
+        wi: Vec3,
+        mode: TransportMode,
+        random: &mut ArgumentRandom,
+    ) -> SampledSpectrum {
         let mut sum = SampledSpectrum::ZERO;
         let adjoint = match mode {
             TransportMode::Radiance => TransportMode::Importance,
@@ -313,7 +181,7 @@ impl Layered {
     }
 
     /// Goes to where the walk meets something next; `None` for a direction along the layers.
-    fn fly(&self, walk: &mut Walk, random: &mut ArgumentRandom) -> Option<Flight> {
+    pub(super) fn fly(&self, walk: &mut Walk, random: &mut ArgumentRandom) -> Option<Flight> {
         let thickness = self.interlayer.thickness;
         let up = walk.w.z > 0.0;
         let end = if up { thickness } else { 0.0 };
@@ -334,7 +202,7 @@ impl Layered {
     }
 
     /// Draws a new direction from the phase function and returns its density.
-    fn scatter_in_medium(&self, walk: &mut Walk, random: &mut ArgumentRandom) -> f32 {
+    pub(super) fn scatter_in_medium(&self, walk: &mut Walk, random: &mut ArgumentRandom) -> f32 {
         let g = self.interlayer.g;
         let cos = sample_henyey_greenstein(random.unit(), g);
         let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -343,28 +211,6 @@ impl Layered {
         walk.w = Frame::from_normal(walk.w).to_world(local).normalize();
         walk.beta *= self.interlayer.albedo;
         henyey_greenstein(cos, g)
-    }
-
-    /// A density like that of samples, for directions above: what the coat reflects, what the body reflects once and a smooth coat
-    /// refracts, and some everywhere.
-    fn density(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let reflectance = self.coat.reflectance(wo.z);
-        let coat = self.coat.reflection_pdf(wo, wi);
-        let everywhere = wi.z * FRAC_1_PI;
-        let eta = self.coat.eta();
-        let below = match (refract(wo, Vec3::Z, eta), refract(wi, Vec3::Z, eta)) {
-            _ if self.body.is_delta() => coat.unwrap_or(everywhere),
-            (Some((o, _)), Some((i, _))) => {
-                let pdf = self.body.eval(-o, -i).map_or(0.0, |value| value.pdf);
-                pdf * wi.z / (eta * eta * i.z.abs())
-            }
-            _ => everywhere,
-        };
-        let guess = match coat {
-            Some(coat) => reflectance * coat + (1.0 - reflectance) * below,
-            None => below,
-        };
-        (1.0 - SPREAD) * guess + SPREAD * everywhere
     }
 }
 
@@ -384,25 +230,6 @@ impl Connection {
             Density::Delta(_) => 1.0,
             Density::Continuous(light) => power_heuristic(light.0, pdf),
         }
-    }
-}
-
-impl Walk {
-    fn turn(&mut self, next: &LocalSample) {
-        self.beta *= next.weight();
-        self.w = next.wi;
-    }
-
-    /// Russian roulette, as in pbrt-v4.
-    fn survive(&mut self, depth: u32, random: &mut ArgumentRandom) -> Option<()> {
-        let most = self.beta.max_value();
-        if depth > 3 && most < 0.25 {
-            if random.unit() >= most {
-                return None;
-            }
-            self.beta *= 1.0 / most;
-        }
-        Some(())
     }
 }
 

@@ -1,20 +1,13 @@
 //! Scene descriptions: what pbrt files and PLY meshes become, what is said about bad ones, and that no bytes make the reader panic.
 
-#[path = "desc/bad_input.rs"]
 mod bad_input;
-#[path = "desc/files.rs"]
 mod files;
-#[path = "desc/lights.rs"]
 mod lights;
-#[path = "desc/materials.rs"]
 mod materials;
-#[path = "desc/mutations.rs"]
 mod mutations;
-#[path = "desc/options.rs"]
 mod options;
-#[path = "desc/ply.rs"]
 mod ply;
-#[path = "desc/world.rs"]
+mod tables;
 mod world;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,120 @@
+//! The arguments as typed. Nothing here opens a file or knows a default that a scene could override.
+
+mod render;
+mod values;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+pub use render::RenderArgs;
+pub use values::ListKind;
+
+use crate::accel::Backend;
+use values::parse_backend;
+
+/// What `--version` says: the program, and the Embree that it was built with.
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (Embree: ",
+    env!("LUCERNA_EMBREE_VERSION"),
+    ")"
+);
+
+/// A physically based renderer: pbrt-v4 scenes in, EXR or PNG pictures out.
+///
+/// Rays are traced in packets through Embree, or through Lucerna's own BVH. A picture depends on the scene, the options and the
+/// seed, and not on the number of threads: the same command gives the same bits.
+#[derive(Debug, Parser)]
+#[command(name = "lucerna", version = VERSION, after_help = "\
+Exit codes: 0 done, 1 a render or a file failed, 2 bad usage or a bad scene.
+
+Example:
+  lucerna render scenes/cornell-box.pbrt -o cornell-box.png")]
+pub struct Cli {
+    /// The subcommand.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render scenes to image files
+    Render(Box<RenderArgs>),
+    /// Tell what is in a scene: counts, bounds, lights, materials, memory
+    Info(InfoArgs),
+    /// Measure how far image A is from the reference B
+    Compare(CompareArgs),
+    /// List what scene files may use, with every parameter: type, range, unit, default
+    List(ListArgs),
+}
+
+/// Tell what is in a scene.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// A scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+
+    /// What answers ray queries: `embree` or `bvh`
+    #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
+    pub backend: Backend,
+
+    /// Take unknown and unsupported parameters as warnings where something can stand in for them
+    #[arg(long)]
+    pub lenient: bool,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// List what scene files may use, with every parameter.
+///
+/// Of each parameter: type, name, unit, allowed values, default, and what it means. The scene reader goes by the same tables.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  lucerna list materials
+  lucerna list lights spot
+  lucerna list samplers --json")]
+pub struct ListArgs {
+    /// What to list
+    #[arg(value_name = "WHAT")]
+    pub what: ListKind,
+
+    /// Only the one of this name
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+
+    /// Print one JSON array
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Measure how far image A is from the reference B.
+///
+/// Prints one JSON object: mse, relmse (the mean of (A-B)^2 / (B^2 + 0.01)), mean_a, mean_b, mean_difference ((mean_a - mean_b) /
+/// mean_b) and flip (LDR-FLIP of the clamped sRGB images at 67 pixels a degree).
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The image to judge (EXR or PNG)
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+
+    /// The reference (EXR or PNG)
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,124 @@
+//! The arguments of `lucerna render`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::values::{
+    ColorArg, MaxDepth, QualityArg, SamplerArg, StrategyArg, parse_backend, parse_crop, parse_finite, parse_max_depth,
+    parse_pixel, parse_resolution, parse_seed,
+};
+use crate::accel::Backend;
+use crate::film::PixelRect;
+
+/// Render scenes to image files.
+///
+/// Several scenes, and several cameras of one scene (a `Camera` directive for each, with "string name"), are rendered one after
+/// the other in one process. One that fails does not stop the rest.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Exit codes: 0 done, 1 a render or a file failed, 2 bad usage or a bad scene; the highest, if there are several.
+
+Examples:
+  lucerna render cornell-box.pbrt -o cornell-box.png --spp 256
+  lucerna render frame-*.pbrt -o 'out/{scene}.exr' --quiet
+  lucerna render hall.pbrt -o 'hall-{camera}.exr' --json --stats hall.json
+  lucerna render hall.pbrt -o corner.exr --resolution 1920x1080 --crop 0,0,200,100")]
+pub struct RenderArgs {
+    /// Scene files (.pbrt, .pbrt.gz)
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+
+    /// The image: .exr (32-bit float, linear) or .png (8-bit sRGB)
+    ///
+    /// May hold {scene} (the scene file's name without extension) and {camera}. Without it: the film's filename, else SCENE.exr,
+    /// in the working directory.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+
+    /// How light transport is estimated [default: the scene's] [possible values: path, kajiya]
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<String>,
+
+    /// How `path` looks for light: by directions drawn from BSDFs, by points of lights, or by both [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub strategy: Option<StrategyArg>,
+
+    /// Samples a pixel [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = parse_seed)]
+    pub seed: u64,
+
+    /// Where sample points come from [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub sampler: Option<SamplerArg>,
+
+    /// Greatest number of scattering events of a path, or `unlimited` [default: the scene's]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = parse_max_depth)]
+    pub max_depth: Option<MaxDepth>,
+
+    /// Pixels of the whole picture [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
+    pub resolution: Option<[u32; 2]>,
+
+    /// Render only the pixels x0 <= x < x1, y0 <= y < y1, counted from the top left
+    ///
+    /// They are exactly the pixels that the whole picture has there. In an EXR file the crop is the data window, the picture the
+    /// display window.
+    #[arg(long, value_name = "x0,y0,x1,y1", value_parser = parse_crop)]
+    pub crop: Option<PixelRect>,
+
+    /// Render only this pixel; with --sample, to look into a sample that was dropped
+    #[arg(long, value_name = "x,y", value_parser = parse_pixel, conflicts_with = "crop")]
+    pub pixel: Option<PixelRect>,
+
+    /// Render only this sample of each pixel, counted from 0
+    #[arg(long, value_name = "N")]
+    pub sample: Option<u32>,
+
+    /// Carry wavelengths along paths, or linear sRGB
+    #[arg(long, value_name = "MODE", default_value = "spectral")]
+    pub color: ColorArg,
+
+    /// Brightness of a PNG, in stops
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_finite)]
+    pub exposure: f32,
+
+    /// Threads [default: as many as the machine runs at once]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+
+    /// What answers ray queries: `embree` or `bvh`
+    #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
+    pub backend: Backend,
+
+    /// Build time of the backend against its speed
+    #[arg(long, value_name = "QUALITY", default_value = "medium")]
+    pub build_quality: QualityArg,
+
+    /// Let Embree use its fast triangle test, which is not watertight
+    #[arg(long)]
+    pub not_robust: bool,
+
+    /// Take unknown and unsupported parameters of a scene as warnings where something can stand in for them
+    #[arg(long)]
+    pub lenient: bool,
+
+    /// Write statistics to this file: a JSON object, or an array if there are several renders
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+
+    /// Write events to stdout, a JSON object a line
+    ///
+    /// {"event": "progress", "scene", "camera", "done" (0 to 1), "seconds_left"}, {"event": "result", "scene", "camera", and the
+    /// statistics}, {"event": "error", "scene", "camera", "message"}.
+    #[arg(long)]
+    pub json: bool,
+
+    /// Write nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}

@@ -1,0 +1,173 @@
+//! One picture: rendered, written, counted.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::Job;
+use super::prepare::{Picture, Prepared};
+use crate::cli::report::Reporter;
+use crate::cli::stats::{Statistics, peak_memory_bytes};
+use crate::desc::SceneDesc;
+use crate::error::{Error, Result};
+use crate::image_io::{Image, ImageMetadata, Window};
+use crate::integrator::{Integrator, RenderStats};
+use crate::scene::View;
+use crate::spectrum::ColorSpace;
+
+impl Job<'_> {
+    /// Renders a view and writes its picture; `start` is when the work for it began.
+    pub(super) fn render_picture(
+        &self,
+        path: &Path,
+        prepared: &Prepared,
+        picture: Picture,
+        start: Instant,
+    ) -> Result<Statistics> {
+        let Picture { view, output } = picture;
+        let reporter = Reporter {
+            channel: self.channel,
+            scene: path,
+            camera: &view.name,
+        };
+        let integrator = self.integrator(&prepared.desc)?;
+        let film = view.film();
+        let progress = reporter.progress();
+        let stats = self
+            .pool
+            .install(|| integrator.render(&prepared.scene, &view, &film, &progress));
+        progress.finish();
+
+        let accel = prepared.scene.accel().info();
+        let metadata = ImageMetadata {
+            seed: self.args.seed,
+            spp: i32::try_from(view.sampler.samples_per_pixel()).unwrap_or(i32::MAX),
+            integrator: integrator.name().to_owned(),
+            backend: accel.backend.to_string(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            render_seconds: stats.render_time.as_secs_f64(),
+            scene_hash: prepared.desc.hash.clone(),
+            chromaticities: chromaticities(view.color_space),
+        };
+        let image = Image::rgb(data_window(&view), display_window(&view), film.develop())?;
+        let written = output.commit(&image, Some(&metadata), self.args.exposure)?;
+        if view.color_space != ColorSpace::Srgb && written.path.extension().is_none_or(|e| e != "exr") {
+            let name = view.color_space.name();
+            reporter.say(&format!(
+                "{} cannot say that its colors are in {name}: programs will take them for sRGB",
+                written.path.display()
+            ));
+        }
+        if let Some(reason) = &written.instead_because {
+            (self.print_error)(reason);
+            reporter.say(&format!("the picture is in {} instead", written.path.display()));
+        }
+        report_dropped(&reporter, &stats, self.args.seed, path);
+        let statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);
+        reporter.result(&statistics);
+        match written.instead_because {
+            Some(reason) => Err(reason),
+            None => Ok(statistics),
+        }
+    }
+
+    /// The scene's integrator, as changed by the command line.
+    fn integrator(&self, desc: &SceneDesc) -> Result<Integrator> {
+        let mut integrator = Integrator::from_desc(&desc.integrator);
+        if let Some(name) = &self.args.integrator {
+            integrator = integrator.named(name);
+        }
+        if let Some(max_depth) = self.args.max_depth {
+            integrator = integrator.with_max_depth(max_depth.0);
+        }
+        let Some(strategy) = self.args.strategy else {
+            return Ok(integrator);
+        };
+        integrator.with_strategy(strategy.into()).ok_or_else(|| {
+            let name = integrator.name();
+            Error::Usage(format!(
+                "--strategy is for the integrator `path`: `{name}` has no strategies"
+            ))
+        })
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "gathers what the parts of a render know")]
+    fn statistics_of(
+        &self,
+        prepared: &Prepared,
+        view: &View,
+        integrator: &Integrator,
+        stats: &RenderStats,
+        output: &Path,
+        scene: &Path,
+        start: Instant,
+    ) -> Statistics {
+        let accel = prepared.scene.accel().info();
+        let render_seconds = stats.render_time.as_secs_f64();
+        Statistics {
+            scene: scene.display().to_string(),
+            camera: view.name.clone(),
+            output: output.display().to_string(),
+            resolution: view.resolution,
+            crop: [view.crop.x0, view.crop.y0, view.crop.x1, view.crop.y1],
+            integrator: integrator.name(),
+            color: match prepared.scene.color() {
+                crate::spectrum::ColorMode::Spectral => "spectral",
+                crate::spectrum::ColorMode::Rgb => "rgb",
+            },
+            backend: accel.backend.to_string(),
+            backend_version: accel.version,
+            threads: self.pool.current_num_threads(),
+            seed: self.args.seed,
+            spp: view.sampler.samples_per_pixel(),
+            wall_seconds: start.elapsed().as_secs_f64(),
+            load_seconds: prepared.load_seconds,
+            build_seconds: prepared.scene.build_seconds(),
+            render_seconds,
+            backend_thread_seconds: stats.backend_time.as_secs_f64(),
+            camera_rays: stats.camera_rays,
+            shadow_rays: stats.shadow_rays,
+            rays: stats.rays(),
+            rays_per_second: stats.rays() as f64 / render_seconds.max(1e-9),
+            peak_memory_bytes: peak_memory_bytes(),
+            dropped_samples: stats.dropped_samples,
+        }
+    }
+}
+
+/// Red, green, blue and white of a colour space.
+fn chromaticities(space: ColorSpace) -> [[f32; 2]; 4] {
+    let [red, green, blue] = space.primaries();
+    [red, green, blue, space.white()].map(|xy| xy.map(|c| c as f32))
+}
+
+/// The pixels rendered.
+fn data_window(view: &View) -> Window {
+    let [x0, y0, x1, y1] =
+        [view.crop.x0, view.crop.y0, view.crop.x1, view.crop.y1].map(|edge| i32::try_from(edge).unwrap_or(i32::MAX));
+    Window { x0, y0, x1, y1 }
+}
+
+/// The whole picture.
+fn display_window(view: &View) -> Window {
+    let [width, height] = view.resolution.map(|size| i32::try_from(size).unwrap_or(i32::MAX));
+    Window::of_size(width, height)
+}
+
+/// Says which samples were dropped, and how to render them again.
+fn report_dropped(reporter: &Reporter, stats: &RenderStats, seed: u64, scene: &Path) {
+    if stats.dropped_samples == 0 {
+        return;
+    }
+    reporter.say(&format!(
+        "warning: {} samples were not finite or negative and count as black; to look into one:",
+        stats.dropped_samples
+    ));
+    for dropped in stats.dropped.iter().take(4) {
+        let [x, y] = dropped.pixel;
+        reporter.say(&format!(
+            "  lucerna render {} --seed {seed} --pixel {x},{y} --sample {} (and the options of this render)",
+            scene.display(),
+            dropped.sample
+        ));
+    }
+}

@@ -1,0 +1,124 @@
+//! What comes before any ray: reading and building the scene, naming and opening the outputs.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::Job;
+use crate::accel::BuildOptions;
+use crate::cli::report::Reporter;
+use crate::desc::{self, ParseOptions, SceneDesc};
+use crate::error::{Error, Result};
+use crate::image_io::PendingOutput;
+use crate::scene::{Scene, SceneOptions, View, ViewOverrides};
+
+/// A scene, read and built.
+pub(super) struct Prepared {
+    pub(super) scene: Scene,
+    pub(super) desc: SceneDesc,
+    pub(super) load_seconds: f64,
+}
+
+/// A view and its open output.
+pub(super) struct Picture {
+    pub(super) view: View,
+    pub(super) output: PendingOutput,
+}
+
+impl Job<'_> {
+    /// Reads a scene, opens the outputs of its views, and builds the backend: whatever is wrong with any of them is said before
+    /// anything is rendered.
+    pub(super) fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
+        let args = self.args;
+        let desc = self
+            .pool
+            .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
+        Reporter {
+            channel: self.channel,
+            scene: path,
+            camera: "",
+        }
+        .warnings(&desc.warnings);
+        let overrides = ViewOverrides {
+            resolution: args.resolution,
+            crop: args.crop.or(args.pixel),
+            spp: args.spp,
+            sampler: args.sampler.map(Into::into),
+            sample: args.sample,
+            seed: args.seed,
+        };
+        let mut pictures = Vec::new();
+        for view in &desc.views {
+            let view = View::build(&desc, view, args.color.into(), &overrides)?;
+            let file = self.output_path(path, &view, desc.views.len())?;
+            pictures.push(Picture {
+                output: PendingOutput::create(&file)?,
+                view,
+            });
+        }
+        let load_seconds = start.elapsed().as_secs_f64();
+        let options = SceneOptions {
+            backend: args.backend,
+            build: BuildOptions {
+                quality: args.build_quality.into(),
+                robust: !args.not_robust,
+                threads: self.pool.current_num_threads(),
+            },
+            color: args.color.into(),
+        };
+        let scene = self.pool.install(|| Scene::build(&desc, &options))?;
+        if scene.lights().is_empty() {
+            Reporter {
+                channel: self.channel,
+                scene: path,
+                camera: "",
+            }
+            .say(&format!(
+                "warning: {} has no lights: its picture is black",
+                path.display()
+            ));
+        }
+        Ok((
+            Prepared {
+                scene,
+                desc,
+                load_seconds,
+            },
+            pictures,
+        ))
+    }
+
+    /// The file for a view: distinct from that of every other picture of this job.
+    fn output_path(&mut self, scene: &Path, view: &View, views: usize) -> Result<PathBuf> {
+        let file_name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = file_name.trim_end_matches(".gz").trim_end_matches(".pbrt");
+        let several = if views > 1 {
+            "{scene}-{camera}.exr"
+        } else {
+            "{scene}.exr"
+        };
+        let template = match (&self.args.output, &view.filename) {
+            (Some(output), _) => output.to_string_lossy().into_owned(),
+            (None, Some(film)) => film.to_string_lossy().into_owned(),
+            (None, None) => several.to_owned(),
+        };
+        let path = PathBuf::from(template.replace("{scene}", stem).replace("{camera}", &view.name));
+        if self.outputs.insert(path.clone()) {
+            return Ok(path);
+        }
+        Err(Error::Usage(format!(
+            "{}: two pictures would be written to this file; put {{scene}} or {{camera}} into the name given by -o",
+            path.display()
+        )))
+    }
+}
+
+/// Checks that only `{scene}` and `{camera}` stand in a name.
+pub(super) fn check_placeholders(template: &str) -> Result<()> {
+    let known = template.replace("{scene}", "").replace("{camera}", "");
+    match known.split_once('{').and_then(|(_, rest)| rest.split_once('}')) {
+        Some((name, _)) => Err(Error::Usage(format!(
+            "{template}: unknown placeholder {{{name}}}: expected {{scene}} or {{camera}}"
+        ))),
+        None => Ok(()),
+    }
+}

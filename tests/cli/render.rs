@@ -1,0 +1,119 @@
+//! `lucerna render`: which pictures it writes, and what is in them.
+
+use lucerna::image_io::{Window, read, read_exr};
+use serde_json::Value;
+
+use crate::{SCENE, Sandbox};
+
+#[test]
+fn without_a_name_the_output_is_the_films_or_the_scenes() {
+    let sandbox = Sandbox::new();
+    sandbox.lucerna(&["render", "ball.pbrt", "--quiet"]).expect(0);
+    sandbox.write(
+        "named.pbrt",
+        &SCENE.replace("\"rgb\"", "\"rgb\" \"string filename\" \"film.png\""),
+    );
+    sandbox.lucerna(&["render", "named.pbrt", "--quiet"]).expect(0);
+    assert_eq!(sandbox.files(), ["ball.exr", "film.png"]);
+}
+
+#[test]
+fn one_bad_scene_does_not_stop_the_others() {
+    let sandbox = Sandbox::new();
+    sandbox.write("bad.pbrt", "WorldBegin\nNonsense\n");
+    sandbox.write("cube.pbrt", SCENE);
+    let run = sandbox.lucerna(&[
+        "render",
+        "bad.pbrt",
+        "ball.pbrt",
+        "missing.pbrt",
+        "cube.pbrt",
+        "-o",
+        "{scene}.png",
+        "--quiet",
+    ]);
+    run.expect(2)
+        .says("unknown directive `Nonsense`")
+        .says("cannot read missing.pbrt");
+    assert_eq!(sandbox.files(), ["ball.png", "cube.png"]);
+}
+
+#[test]
+fn every_camera_of_a_scene_has_its_picture() {
+    let sandbox = Sandbox::new();
+    let camera = "Camera \"perspective\" \"float fov\" 60";
+    let two = format!("{camera} \"string name\" \"left\"\n{camera} \"string name\" \"right\"");
+    sandbox.write("two.pbrt", &SCENE.replace(camera, &two));
+    sandbox
+        .lucerna(&["render", "two.pbrt", "-o", "one.png"])
+        .expect(2)
+        .says("two pictures would be written to this file");
+    assert_eq!(sandbox.files(), [] as [&str; 0]);
+    sandbox
+        .lucerna(&["render", "two.pbrt", "-o", "{scene}-{camera}.png", "--stats", "s.json"])
+        .expect(0);
+    assert_eq!(sandbox.files(), ["s.json", "two-left.png", "two-right.png"]);
+    let statistics: Value = serde_json::from_slice(&std::fs::read(sandbox.path("s.json")).unwrap()).unwrap();
+    assert_eq!(statistics.as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn a_crop_is_a_data_window_of_the_same_pixels() {
+    let sandbox = Sandbox::new();
+    sandbox
+        .lucerna(&["render", "ball.pbrt", "-o", "whole.exr", "-q"])
+        .expect(0);
+    sandbox
+        .lucerna(&["render", "ball.pbrt", "-o", "crop.exr", "-q", "--crop", "5,3,18,9"])
+        .expect(0);
+    let whole = read(&sandbox.path("whole.exr")).expect("readable");
+    let (crop, metadata) = read_exr(&sandbox.path("crop.exr")).expect("readable");
+    assert_eq!(
+        crop.data_window(),
+        Window {
+            x0: 5,
+            y0: 3,
+            x1: 18,
+            y1: 9
+        }
+    );
+    assert_eq!(crop.display_window(), Window::of_size(24, 16));
+    for y in 0..crop.height() {
+        for x in 0..crop.width() {
+            assert_eq!(
+                crop.pixel(x, y),
+                whole.pixel(x + 5, y + 3),
+                "pixel {x}, {y} of the crop"
+            );
+        }
+    }
+    let metadata = metadata.expect("Lucerna's own attributes");
+    assert_eq!(
+        (metadata.spp, metadata.seed, metadata.integrator.as_str()),
+        (4, 0, "path")
+    );
+    assert_eq!(metadata.scene_hash.len(), 64);
+}
+
+#[test]
+fn samplers_and_integrators_are_chosen_by_the_names_listed() {
+    let sandbox = Sandbox::new();
+    for (what, option) in [("samplers", "--sampler"), ("integrators", "--integrator")] {
+        let json: Value =
+            serde_json::from_str(&sandbox.lucerna(&["list", what, "--json"]).expect(0).stdout()).expect("JSON");
+        let mut images = Vec::new();
+        for entry in json.as_array().expect("an array") {
+            let name = entry["name"].as_str().expect("a name");
+            // Twelve samples: no power of two, and strata of four by three.
+            sandbox
+                .lucerna(&["render", "ball.pbrt", "-o", "a.exr", "--spp", "12", "-q", option, name])
+                .expect(0);
+            let (image, _) = read_exr(&sandbox.path("a.exr")).expect("an image");
+            assert!(image.data().iter().all(|v| v.is_finite()), "{name}");
+            images.push(image.data().to_vec());
+        }
+        for (i, image) in images.iter().enumerate() {
+            assert!(images[..i].iter().all(|other| other != image), "{what} {i}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Arguments, good and bad, and files that are not there.
+
+use crate::Sandbox;
+
+#[test]
+fn help_and_version_are_for_standard_output() {
+    let sandbox = Sandbox::new();
+    let version = sandbox.lucerna(&["--version"]).expect(0).stdout();
+    assert!(
+        version.starts_with(&format!("lucerna {} (Embree: ", env!("CARGO_PKG_VERSION"))),
+        "{version}"
+    );
+    for command in ["render", "info", "compare"] {
+        assert!(
+            sandbox
+                .lucerna(&[command, "--help"])
+                .expect(0)
+                .stdout()
+                .contains("Usage: lucerna")
+        );
+    }
+    let help = sandbox.lucerna(&["render", "--help"]).expect(0).stdout();
+    for option in [
+        "--output",
+        "--spp",
+        "--seed",
+        "--threads",
+        "--backend",
+        "--resolution",
+        "--crop",
+        "--color",
+    ] {
+        assert!(help.contains(option), "{option} is not in the help");
+    }
+}
+
+#[test]
+fn bad_usage_is_code_2_and_leaves_nothing() {
+    let sandbox = Sandbox::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["render"], "<SCENE>"),
+        (&["render", "ball.pbrt", "--frobnicate"], "--frobnicate"),
+        (&["render", "ball.pbrt", "-o", "ball.jpg"], ".exr or .png"),
+        (
+            &["render", "ball.pbrt", "-o", "{view}.png"],
+            "unknown placeholder {view}",
+        ),
+        (
+            &["render", "ball.pbrt", "ball.pbrt", "-o", "x.png"],
+            "put {scene} into its name",
+        ),
+        (
+            &["render", "ball.pbrt", "--integrator", "magic"],
+            "unknown integrator `magic`",
+        ),
+        (&["render", "ball.pbrt", "--backend", "magic"], "magic"),
+        (&["render", "ball.pbrt", "--spp", "0"], "0"),
+        (&["render", "ball.pbrt", "--threads", "0"], "0"),
+        (&["render", "ball.pbrt", "--resolution", "24"], "width x height"),
+        (&["render", "ball.pbrt", "--crop", "4,4,4,8"], "crop is empty"),
+        (&["render", "ball.pbrt", "--crop", "0,0,25,16"], "24x16"),
+        (&["render", "ball.pbrt", "--sample", "4"], "there is no sample 4"),
+        (&["render", "ball.txt"], ".pbrt"),
+    ];
+    for (arguments, text) in cases {
+        sandbox.lucerna(arguments).expect(2).says(text);
+    }
+    assert_eq!(sandbox.files(), [] as [&str; 0]);
+}
+
+#[test]
+fn a_scene_tells_all_its_errors_with_their_places() {
+    let sandbox = Sandbox::new();
+    sandbox.write(
+        "bad.pbrt",
+        "Camera \"perspective\" \"float fov\" 200\nWorldBegin\nMaterail \"diffuse\"\nShape \"sphre\"\n",
+    );
+    sandbox
+        .lucerna(&["render", "bad.pbrt"])
+        .expect(2)
+        .says("bad.pbrt:1:34: error: `fov` is 200")
+        .says("bad.pbrt:3:1: error: unknown directive `Materail`")
+        .says("did you mean `Material`?")
+        .says("bad.pbrt:4:7: error")
+        .says("did you mean `sphere`?");
+    assert_eq!(sandbox.files(), [] as [&str; 0]);
+}
+
+#[test]
+fn files_that_cannot_be_read_or_written_are_code_1() {
+    let sandbox = Sandbox::new();
+    sandbox
+        .lucerna(&["render", "missing.pbrt"])
+        .expect(1)
+        .says("cannot read missing.pbrt");
+    sandbox
+        .lucerna(&["render", "ball.pbrt", "-o", "no/where.png"])
+        .expect(1)
+        .says("there is no directory no");
+    sandbox
+        .lucerna(&["compare", "missing.png", "missing.png"])
+        .expect(1)
+        .says("cannot read missing.png");
+}
