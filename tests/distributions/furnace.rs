@@ -9,10 +9,10 @@ use lucerna::material::{Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmissio
 use lucerna::spectrum::SampledSpectrum;
 use rayon::prelude::*;
 
-use super::common::full_tier;
 use super::common::means::{Means, MeansReport};
 use super::common::microfacet::{Shape, Slopes, dielectric_reflectance, direction};
 use super::common::random::Random;
+use super::common::{effort, full_tier};
 use super::energy::{MODE, mirror, upright};
 use super::first_two;
 use super::kinds::{DIRECTIONS, integral};
@@ -116,7 +116,9 @@ pub fn whites() -> Vec<White> {
 /// Independently seeded runs.
 const RUNS: usize = 64;
 /// Values of a run that say how many it takes, and then count no more: rare large ones must not decide when to stop.
-const PILOT: usize = 2048;
+fn pilot() -> usize {
+    2048 * effort(8)
+}
 /// What a test notices over the standard deviation (see `Means`), with a quarter for what the pilot did not see.
 const REACH: f64 = 7.0 * 1.25;
 
@@ -142,7 +144,7 @@ impl Shares<'_> {
     /// Compares with 1, with `least` values or as many as it takes to notice an error of `one` in one direction.
     fn compare(&self, means: Means, one: f64, least: usize) -> MeansReport {
         let by_direction = (0..DIRECTIONS.len()).map(|i| {
-            let pilot = self.runs(i, PILOT, 1);
+            let pilot = self.runs(i, pilot(), 1);
             let mean_of = |of: fn(&(f64, f64)) -> f64| pilot.iter().map(of).sum::<f64>() / RUNS as f64;
             let variance = mean_of(|run| run.1) - mean_of(|run| run.0).powi(2);
             let count = variance * (REACH / (one - means.slack)).powi(2) / RUNS as f64;
@@ -190,7 +192,7 @@ fn furnace(white: &White, tests: usize, power: &Power, kept: &(dyn Fn(DVec3, &mu
         // The quadratures of single scattering, and single precision.
         slack: 2e-4,
     };
-    let report = Shares { estimate: kept }.compare(means, 0.85 * power.one, power.least);
+    let report = Shares { estimate: kept }.compare(means, 0.8 * power.one, power.least);
     println!("{}: {report}", white.name);
     report.assert_agrees(&white.name);
     report.assert_power(&white.name, power.one, power.all);

@@ -13,6 +13,7 @@ mod light_samplers;
 mod lights;
 mod measured;
 mod narrow;
+mod textured;
 
 use glam::Vec2;
 
