@@ -249,13 +249,19 @@ fn sphere_uv(outward: DVec3) -> Vec2 {
     Vec2::new(turn as f32, height as f32)
 }
 
-/// The mean luminance over a surface, by 1024 points; more than nothing if anything in the image emits, as points may miss it.
+/// The mean luminance over a surface, by some points for each pixel that it shows, within reason; more than nothing if anything in
+/// the image emits, as points may miss it.
 fn mean_luminance(image: &EmissionImage, coordinates: &Coordinates) -> f32 {
-    const STEPS: usize = 32;
     let [width, height] = image.size();
     let whole = image.sum(|_, _| 1.0) / (width * height) as f32;
-    let mean = (0..STEPS * STEPS).map(|i| {
-        let u = (Vec2::new((i % STEPS) as f32, (i / STEPS) as f32) + 0.5) / STEPS as f32;
+    let size = Vec2::new(width as f32, height as f32);
+    let shown = match coordinates {
+        Coordinates::Corners([p, q, r]) => (p.max(*q).max(*r) - p.min(*q).min(*r)) * size,
+        Coordinates::Sphere(_) => size,
+    };
+    let steps = (2.0 * shown.max_element()).clamp(32.0, 512.0) as usize;
+    let mean = (0..steps * steps).map(|i| {
+        let u = (Vec2::new((i % steps) as f32, (i / steps) as f32) + 0.5) / steps as f32;
         let uv = match coordinates {
             Coordinates::Corners([p, q, r]) => {
                 let b = crate::sampling::warp::sample_uniform_triangle(u);
@@ -263,7 +269,7 @@ fn mean_luminance(image: &EmissionImage, coordinates: &Coordinates) -> f32 {
             }
             Coordinates::Sphere(_) => sphere_uv(crate::sampling::warp::sample_uniform_sphere(u).as_dvec3()),
         };
-        image.luminance_bilinear(uv)
+        f64::from(image.luminance_bilinear(uv))
     });
-    (mean.sum::<f32>() / (STEPS * STEPS) as f32).max(1e-3 * whole)
+    ((mean.sum::<f64>() / (steps * steps) as f64) as f32).max(1e-3 * whole)
 }

@@ -12,8 +12,11 @@ use crate::spectrum::{CompiledSpectrum, Wavelengths};
 pub struct SpotLight {
     place: Place,
     intensity: CompiledSpectrum,
-    cos_start: f32,
-    cos_end: f32,
+    start: f32,
+    end: f32,
+    /// 1 - cos of both angles: of narrow cones the cosines themselves say little.
+    rise_start: f32,
+    rise_end: f32,
 }
 
 impl SpotLight {
@@ -22,21 +25,28 @@ impl SpotLight {
         Self {
             place,
             intensity,
-            cos_start: start.cos(),
-            cos_end: end.cos(),
+            start,
+            end,
+            rise_start: rise(start),
+            rise_end: rise(end),
         }
     }
 
     /// The power of a spotlight of intensity 1, by the same angles.
     pub fn geometric_power(start: f32, end: f32) -> f32 {
-        cone_power(start.cos(), end.cos())
+        cone_power(rise(start), rise(end))
     }
 
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let cos = pose.local_direction(w).z;
-            self.intensity.sample(lambda) * smooth_step(cos, self.cos_end, self.cos_start)
+            let w = pose.local_direction(w);
+            let rise = if w.z > 0.0 {
+                (w.x * w.x + w.y * w.y) / (1.0 + w.z)
+            } else {
+                1.0 - w.z
+            };
+            self.intensity.sample(lambda) * (1.0 - smooth_step(rise, self.rise_start, self.rise_end))
         })
     }
 
@@ -48,26 +58,31 @@ impl SpotLight {
         }
         LightBounds {
             axis: self.place.at(0.0).axis(),
-            cos_normals: self.cos_start,
-            cos_emission: (self.cos_end.acos() - self.cos_start.acos()).cos(),
+            cos_normals: self.start.cos(),
+            cos_emission: (self.end - self.start).cos(),
             ..all_around
         }
     }
 
     pub(super) fn power(&self) -> f32 {
-        cone_power(self.cos_start, self.cos_end) * self.intensity.photometric_luminance()
+        cone_power(self.rise_start, self.rise_end) * self.intensity.photometric_luminance()
     }
 }
 
+/// 1 - cos.
+fn rise(angle: f32) -> f32 {
+    2.0 * (0.5 * angle).sin().powi(2)
+}
+
 /// The smooth step is 1/2 on average over the cosine.
-fn cone_power(cos_start: f32, cos_end: f32) -> f32 {
-    TAU * ((1.0 - cos_start) + 0.5 * (cos_start - cos_end))
+fn cone_power(rise_start: f32, rise_end: f32) -> f32 {
+    TAU * 0.5 * (rise_start + rise_end)
 }
 
 /// 0 below `low`, 1 above `high`, a cubic between them.
 fn smooth_step(x: f32, low: f32, high: f32) -> f32 {
     if low >= high {
-        return if x < low { 0.0 } else { 1.0 };
+        return if x <= low { 0.0 } else { 1.0 };
     }
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
