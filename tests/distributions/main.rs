@@ -4,6 +4,7 @@
 mod common;
 
 mod bsdfs;
+mod camera_importance;
 mod cameras;
 mod energy;
 mod environments;
