@@ -93,7 +93,7 @@ fn heuristic(reader: &mut ParamReader<'_>) -> Heuristic {
 }
 
 /// Says so if something of pbrt's that is not there is asked for.
-fn unsupported_flag(reader: &mut ParamReader<'_>, flag: &Parameter) {
+fn unsupported_flag(reader: &mut ParamReader<'_>, flag: &'static Parameter) {
     if reader.bool_by(flag) {
         let span = reader.span_of(flag.name);
         let message = format!("`{}` is not supported", flag.name);

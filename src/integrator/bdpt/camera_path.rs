@@ -188,7 +188,7 @@ impl BdptIntegrator {
         }
         let here = bsdf.eval(si.wo, w, TransportMode::Radiance)?;
         let there = light.bsdf.eval(light.si.wo, -w, TransportMode::Importance)?;
-        let correction = self.adjoint_correction(&light.si, -w);
+        let correction = self.adjoint_correction(&light.si, &light.bsdf, -w);
         let f = here.f * there.f * (here.cos_theta * there.cos_theta * correction / distance_squared);
         if f.is_black() {
             return None;

@@ -65,7 +65,7 @@ impl<'s> LightVertices<'s> {
     }
 
     /// Those of a slot, the last one first.
-    pub fn of(&self, slot: u32) -> impl Iterator<Item = &LightVertex<'s>> {
+    pub(super) fn of(&self, slot: u32) -> impl Iterator<Item = &LightVertex<'s>> {
         let get = |index: u32| self.vertices.get(index as usize);
         std::iter::successors(get(self.last[slot as usize]), move |vertex| get(vertex.previous))
     }
@@ -183,14 +183,14 @@ impl BdptIntegrator {
     fn connect_to_lens(&self, stage: &mut SubpathStage<'_, '_>, event: &Event<'_, '_>) {
         let Event { lane, si, bsdf, .. } = event;
         let (view, slot) = (stage.view, lane.slot);
-        let domain = view.raster_domain();
+        let domain = view.domain();
         let Some(lens) = view.camera.sample_wi(si.p, si.time, event.numbers.light, &domain) else {
             return;
         };
         let Some(value) = bsdf.eval(si.wo, lens.wi, TransportMode::Importance) else {
             return;
         };
-        let f = value.f * (value.cos_theta * self.adjoint_correction(si, lens.wi) * lens.weight());
+        let f = value.f * (value.cos_theta * self.adjoint_correction(si, bsdf, lens.wi) * lens.weight());
         if f.is_black() {
             return;
         }

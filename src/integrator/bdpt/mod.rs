@@ -158,7 +158,7 @@ impl BdptIntegrator {
         };
         let mut weight = sample.weight();
         if mode == TransportMode::Importance {
-            weight *= self.adjoint_correction(si, sample.wi);
+            weight *= self.adjoint_correction(si, &event.bsdf, sample.wi);
         }
         let throughput = lane.state.throughput * weight.max_value();
         let eta_scale = match mode {
@@ -187,12 +187,12 @@ impl BdptIntegrator {
     }
 
     /// What takes the BSDF of a shading normal to its adjoint, for light that arrives from `si.wo` and goes on into `wi` (Veach 1997,
-    /// section 5.3.2): 1 where the two normals are the same.
-    fn adjoint_correction(&self, si: &SurfaceInteraction, wi: Vec3) -> f32 {
+    /// section 5.3.2): 1 where the two normals are the same. The shading normal is the BSDF's, which maps may have bent.
+    fn adjoint_correction(&self, si: &SurfaceInteraction, bsdf: &Bsdf, wi: Vec3) -> f32 {
         if self.fault.is(Fault::AdjointForgotten) {
             return 1.0;
         }
-        let ratio = |w: Vec3| si.ng.dot(w).abs() / si.ns.dot(w).abs();
+        let ratio = |w: Vec3| si.ng.dot(w).abs() / bsdf.abs_cos(w);
         let correction = ratio(wi) / ratio(si.wo);
         if correction.is_finite() { correction } else { 0.0 }
     }
