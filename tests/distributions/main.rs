@@ -8,6 +8,7 @@ mod cameras;
 mod energy;
 mod environments;
 mod kinds;
+mod light_emission;
 mod light_samplers;
 mod lights;
 mod measured;
