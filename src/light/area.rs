@@ -3,13 +3,14 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
+use super::emission::{sample_side, side_pdf};
 use super::emitter::{Emitter, EmitterShape, SamplePlace};
 use super::image::EmissionImage;
 use super::moving::{MovingEmitter, sphere_shape};
-use super::{LightBounds, LightDensity, LightEnd, LightSample};
+use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
 use crate::geometry::Sphere;
 use crate::math::{DMat3, DVec3, Vec2, Vec3};
-use crate::sampling::SolidAnglePdf;
+use crate::sampling::{AreaPdf, SolidAnglePdf};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
 /// A surface that emits the same radiance in every direction of the side of its geometric normal, or of both.
@@ -183,6 +184,57 @@ impl AreaLight {
             },
             density,
         })
+    }
+
+    /// A point by area, and a direction by its cosine.
+    pub(super) fn sample_le(
+        &self,
+        time: f32,
+        u_position: Vec2,
+        u_direction: Vec2,
+        lambda: &Wavelengths,
+    ) -> Option<EmissionSample> {
+        let sample = self.at(time, |emitter| emitter.sample_area(u_position))?;
+        let (p, ng) = (sample.p, sample.ng);
+        let direction = sample_side(ng, self.two_sided, u_direction);
+        let le = self.le(ng, self.uv(sample.at, time), direction, lambda);
+        let le = match self.is_delta() {
+            true => le * (1.0 / sample.pdf.0),
+            false => le * self.alpha,
+        };
+        let emission = EmissionSample {
+            le,
+            origin: EmissionOrigin::Surface {
+                p,
+                error: sample.error,
+                ng,
+            },
+            direction,
+            density: self.density(sample.pdf, ng, direction),
+            cos_theta: ng.dot(direction).abs(),
+        };
+        emission.checked()
+    }
+
+    /// Densities of [`Self::sample_le`] for the ray in direction `w` from the point `p` of the light at `time`, where its geometric
+    /// normal is `ng`.
+    pub(super) fn pdf_le(&self, p: Vec3, ng: Vec3, w: Vec3, time: f32) -> (AreaPdf, SolidAnglePdf) {
+        let position = self.at(time, |emitter| emitter.pdf_area(p));
+        (position.unwrap_or(AreaPdf(0.0)), side_pdf(ng, self.two_sided, w))
+    }
+
+    /// [`Self::pdf_le`]; as a light without extent if no ray meets it.
+    pub(super) fn emission_density(&self, p: Vec3, ng: Vec3, w: Vec3, time: f32) -> EmissionDensity {
+        let (position, _) = self.pdf_le(p, ng, w, time);
+        self.density(position, ng, w)
+    }
+
+    fn density(&self, position: AreaPdf, ng: Vec3, w: Vec3) -> EmissionDensity {
+        let direction = side_pdf(ng, self.two_sided, w);
+        if self.is_delta() {
+            return EmissionDensity::at_point(direction);
+        }
+        EmissionDensity::continuous((position, direction))
     }
 
     /// The texture coordinates of a sampled point, if anything depends on them.

@@ -10,6 +10,7 @@ mod energy;
 mod environments;
 mod furnace;
 mod kinds;
+mod light_emission;
 mod light_samplers;
 mod lights;
 mod measured;
