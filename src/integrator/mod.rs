@@ -148,8 +148,16 @@ impl Integrator {
         }
     }
 
-    /// Renders all samples of `view` onto `film`, on the threads of the rayon pool that calls. The image does not depend on how
-    /// many those are.
+    /// An empty film for what it does with `view`.
+    pub fn film(&self, view: &View) -> Film {
+        match self {
+            Self::Path(_) | Self::Kajiya(_) => view.film(),
+            Self::Bdpt(_) => view.film().with_splats(),
+        }
+    }
+
+    /// Renders all samples of `view` onto `film`, one of [`Integrator::film`], on the threads of the rayon pool that calls. The image
+    /// does not depend on how many those are.
     pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
         let start = Instant::now();
         let mut stats = match self {

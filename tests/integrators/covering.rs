@@ -34,6 +34,8 @@ const BDPT_WAYS: &[&str] = &["bdpt power", "bdpt balance"];
 const SAMPLERS: [&str; 5] = ["zsobol", "sobol", "halton", "stratified", "independent"];
 const LIGHT_SAMPLERS: [&str; 3] = ["bvh", "power", "uniform"];
 const LENSES: [&str; 2] = ["", r#""float lensradius" 0.15 "float focaldistance" 4.5"#];
+/// Surfaces that scatter by delta lobes.
+const SMOOTH: [&str; 5] = ["glass", "mirror", "thin glass", "smooth coat", "glass that disperses"];
 /// Where things are when the shutter closes.
 const MOTIONS: [&str; 2] = [
     "",
@@ -67,10 +69,17 @@ fn levels(ways: &[&str]) -> [usize; 9] {
 
 /// The rows in which all combinations of `strength` levels occur.
 fn rows(ways: &[&str], strength: usize) -> Vec<Vec<usize>> {
-    // Lights that directions do not meet are not looked for by directions alone.
+    // Lights that directions do not meet are not looked for by directions alone; what a mirror throws of them onto other surfaces only
+    // light subpaths find, not the oracle.
     let allowed = |row: &[Option<usize>]| {
         let finds_by_directions = row[WAY].is_some_and(|way| ways[way].contains("bsdf"));
-        !(finds_by_directions && row[LAMP].is_some_and(|lamp| LAMPS[lamp].is_delta))
+        let finds_caustics = row[WAY].is_some_and(|way| ways[way].contains("bdpt"))
+            && row[SURFACE].is_some_and(|group| {
+                SURFACES[GROUP * group..][..GROUP]
+                    .iter()
+                    .any(|s| SMOOTH.contains(&s.name))
+            });
+        !((finds_by_directions || finds_caustics) && row[LAMP].is_some_and(|lamp| LAMPS[lamp].is_delta))
     };
     let covering = Covering {
         levels: &levels(ways),
