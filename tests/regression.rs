@@ -153,6 +153,8 @@ fn narrow_spotlights_have_the_intensity_of_their_power() {
             }
         }
     }
+}
+
 /// The greatest value that a film took was half of what its sums hold: two such samples of a pixel overflowed.
 #[test]
 fn sums_of_the_greatest_values_do_not_overflow() {

@@ -73,7 +73,7 @@ fn rows(ways: &[&str], strength: usize) -> Vec<Vec<usize>> {
     // light subpaths find, not the oracle.
     let allowed = |row: &[Option<usize>]| {
         let finds_by_directions = row[WAY].is_some_and(|way| ways[way].contains("bsdf"));
-        let finds_caustics = row[WAY].is_some_and(|way| ways[way].contains("bdpt"))
+        let finds_caustics = ways == BDPT_WAYS
             && row[SURFACE].is_some_and(|group| {
                 SURFACES[GROUP * group..][..GROUP]
                     .iter()
@@ -87,7 +87,11 @@ fn rows(ways: &[&str], strength: usize) -> Vec<Vec<usize>> {
         allowed: &allowed,
     };
     let rows = covering.rows();
-    println!("{} rows, at least {} are needed", rows.len(), covering.fewest());
+    println!(
+        "{} rows; at least {} if none were excluded",
+        rows.len(),
+        covering.fewest()
+    );
     assert!(covering.missing(&rows).is_empty());
     rows
 }
