@@ -42,7 +42,7 @@ fn options() {
         ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
         (
             "Integrator \"path\" @\"bool regularize\" true WorldBegin",
-            "regularization",
+            "`regularize`",
             "",
         ),
     ];
