@@ -137,9 +137,7 @@ impl ProjectionLight {
     }
 
     pub(super) fn bounds(&self) -> LightBounds {
-        let [width, height] = self.image.size();
-        let intensity = self.image.sum(|_, _| 1.0) / (width * height) as f32;
-        let all_around = LightBounds::omnidirectional(self.place.bounds(), intensity);
+        let all_around = LightBounds::omnidirectional(self.place.bounds(), self.image.mean_luminance());
         if !self.place.is_static() {
             return all_around;
         }

@@ -1,8 +1,9 @@
 //! Lights of every kind, with what is known of their flux and a receiver that they shine on.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Vec2, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
 use lucerna::geometry::Sphere;
 use lucerna::light::{
     AreaLight, Behind, Coordinates, DistantLight, EmissionImage, EmissionSample, EmitterShape, EnvironmentLight,
@@ -12,6 +13,7 @@ use lucerna::light::{
 use lucerna::math::{AnimatedTransform, Bounds3};
 use lucerna::sampling::warp;
 use lucerna::spectrum::{ColorMode, CompiledSpectrum, RgbEmission, Spectrum, SpectrumRole, Wavelengths, cie};
+use lucerna::texture::{Bilerp, FloatTexture, Mapping2};
 
 use crate::common::random::Random;
 
@@ -148,12 +150,24 @@ fn surfaces() -> Vec<Case> {
         ng: -(CORNERS[1] - CORNERS[0]).cross(CORNERS[2] - CORNERS[0]).normalize(),
     };
     let parallelogram = AreaLight::new(parallelogram, constant(2.0), false).expect("not degenerate");
-    let alpha = |alpha: f32| {
-        let mut light = triangle(false);
-        light.see_through(alpha);
-        Light::Area(light)
-    };
+    let alpha = |alpha: f32| Light::Area(triangle(false).with_alpha(alpha));
     let whole = f64::from(triangle(false).area()) * 2.0 * PI;
+    let ramp = |[a, b]: [f32; 2]| {
+        FloatTexture::Bilerp(Arc::new(Bilerp {
+            mapping: Mapping2::Uv {
+                scale: Vec2::ONE,
+                delta: Vec2::ZERO,
+            },
+            corners: [a, b, a, b],
+        }))
+    };
+    // On average over a triangle v is that of its middle, and over a sphere 1/2.
+    let cut = triangle(true).with_alpha_texture(ramp([0.1, 0.7]), Coordinates::Corners(UVS));
+    let cut_flux = 2.0 * whole * (0.1 + 0.6 * f64::from(UVS[0].y + UVS[1].y + UVS[2].y) / 3.0);
+    let ball = AreaLight::sphere(&Sphere::at(DVec3::ZERO, 0.6).expect("a sphere"), constant(2.0), false);
+    let ball = ball.expect("an area");
+    let ball_flux = 0.6 * 2.0 * PI * f64::from(ball.area());
+    let ball = ball.with_alpha_texture(ramp([0.2, 1.0]), Coordinates::Sphere(DMat3::IDENTITY));
     let ellipsoid = AreaLight::sphere(&ellipsoid(), constant(2.0), true).expect("an area");
     vec![
         Case::new("triangle", Light::Area(triangle(false)), ABOVE),
@@ -163,7 +177,11 @@ fn surfaces() -> Vec<Case> {
         Case::new("sphere", sphere(0.5, false), ABOVE),
         Case::new("sphere around", sphere(3.0, true), ABOVE),
         Case::new("ellipsoid", Light::Area(ellipsoid), BELOW),
-        Case::new("alpha", alpha(0.25), ABOVE).with_flux(Some((0.25 * whole, 1e-4))),
+        Case::new("alpha", alpha(0.25), ABOVE),
+        Case::new("alpha by its flux", alpha(0.25), ABOVE).with_flux(Some((0.25 * whole, 1e-4))),
+        Case::new("alpha by a texture", Light::Area(cut.clone()), BELOW),
+        Case::new("alpha by a texture", Light::Area(cut), ABOVE).with_flux(Some((cut_flux, 1e-4))),
+        Case::new("a ball with alpha", Light::Area(ball), ABOVE).with_flux(Some((ball_flux, 1e-4))),
         Case::new("invisible", alpha(0.0), ABOVE).with_flux(Some((whole, 1e-4))),
     ]
 }
