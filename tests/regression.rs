@@ -4,6 +4,7 @@ mod common;
 
 use common::random::Random;
 use common::render::{Built, combinations, parse};
+use lucerna::film::{Film, PixelRect};
 use lucerna::light::{AreaLight, EmitterShape, Light};
 use lucerna::material::fresnel_complex;
 use lucerna::math::{DVec3, Vec2};
@@ -152,4 +153,24 @@ fn narrow_spotlights_have_the_intensity_of_their_power() {
             }
         }
     }
+}
+
+/// The greatest value that a film took was half of what its sums hold: two such samples of a pixel overflowed.
+#[test]
+fn sums_of_the_greatest_values_do_not_overflow() {
+    let film = Film::new([1, 1], PixelRect::full([1, 1]));
+    let mut tile = film.tiles()[0].lock().expect("nobody else");
+    for value in [4e18, 4e18, 4e18] {
+        assert!(!tile.add(0, 0, Some([value, 0.0, 0.0]), 1.0));
+    }
+    let count = 1 << 20;
+    for _ in 0..count {
+        assert!(tile.add(0, 0, Some([1e12, -1e12, 1.0]), 1.0));
+    }
+    drop(tile);
+    let share = f64::from(count) / f64::from(count + 3);
+    for (got, value) in film.develop().iter().zip([1e12, -1e12, 1.0]) {
+        assert!((f64::from(*got) / (value * share) - 1.0).abs() < 1e-6);
+    }
+    assert_eq!(film.dropped_samples(), 3);
 }

@@ -1,9 +1,16 @@
-//! Cameras: from a point of the film, of the lens and of time to a ray.
+//! Cameras: from a point of the film, of the lens and of time to a ray, and from a point of the scene back to the film.
 
+mod aperture;
+mod importance;
+mod pose;
+
+pub use importance::{CameraConnection, CameraDensity, CameraRay, RasterDomain};
+
+use self::aperture::Aperture;
+use self::pose::{CameraFrame, Pose};
 use crate::desc::{ApertureDesc, MeasureDesc};
 use crate::geometry::{Ray, RayCone};
-use crate::math::{AnimatedTransform, DAffine3, Vec2, Vec3};
-use crate::sampling::warp;
+use crate::math::{AnimatedTransform, Vec2, Vec3};
 
 /// How a camera maps the film onto the scene. In camera space it looks along +z, x is to the right of the picture, y is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,66 +64,8 @@ pub struct Camera {
     irradiance_area: Option<f32>,
     shutter: [f32; 2],
     world_from_camera: AnimatedTransform,
-    /// The transform's rows, where nothing moves.
-    fixed: Option<CameraFrame>,
-}
-
-/// The shape of the lens, of radius 1.
-#[derive(Clone, Copy, Debug)]
-enum Aperture {
-    Round,
-    /// Corners, and cosine and sine of the angle of the first.
-    Polygon(u32, Vec2),
-}
-
-impl Aperture {
-    fn new(desc: ApertureDesc) -> Self {
-        match desc {
-            ApertureDesc::Round => Self::Round,
-            ApertureDesc::Polygon { blades, rotation } => {
-                Self::Polygon(blades, Vec2::from_angle(rotation.to_radians() as f32))
-            }
-        }
-    }
-
-    /// A point of it, uniform by area.
-    #[inline]
-    fn sample(self, u: Vec2) -> Vec2 {
-        match self {
-            Self::Round => warp::sample_uniform_disk(u),
-            Self::Polygon(blades, turn) => turn.rotate(warp::sample_regular_polygon(u, blades)),
-        }
-    }
-}
-
-/// An affine transform in single precision, by its columns.
-#[derive(Clone, Copy, Debug)]
-struct CameraFrame {
-    x: Vec3,
-    y: Vec3,
-    z: Vec3,
-    origin: Vec3,
-}
-
-impl CameraFrame {
-    fn new(m: &DAffine3) -> Self {
-        Self {
-            x: m.matrix3.x_axis.as_vec3(),
-            y: m.matrix3.y_axis.as_vec3(),
-            z: m.matrix3.z_axis.as_vec3(),
-            origin: m.translation.as_vec3(),
-        }
-    }
-
-    #[inline]
-    fn vector(&self, v: Vec3) -> Vec3 {
-        self.x * v.x + self.y * v.y + self.z * v.z
-    }
-
-    #[inline]
-    fn point(&self, p: Vec3) -> Vec3 {
-        self.vector(p) + self.origin
-    }
+    /// The transforms, where nothing moves.
+    fixed: Option<Pose>,
 }
 
 /// The numbers that choose a camera ray.
@@ -154,7 +103,7 @@ impl Camera {
                 MeasureDesc::Irradiance => Some((per_pixel[0] * per_pixel[1]).abs() as f32),
             },
             shutter: spec.shutter.map(|t| t as f32),
-            fixed: is_static.then(|| CameraFrame::new(&spec.world_from_camera.at(0.0))),
+            fixed: is_static.then(|| Pose::new(&spec.world_from_camera.at(0.0))),
             world_from_camera: spec.world_from_camera.clone(),
         }
     }
@@ -162,13 +111,12 @@ impl Camera {
     /// The ray of a sample, with a direction of unit length.
     #[inline]
     pub fn sample_ray(&self, sample: &CameraSample) -> Ray {
-        let time = self.shutter[0] + sample.time * (self.shutter[1] - self.shutter[0]);
-        let time = time.clamp(0.0, 1.0);
+        let time = self.scene_time(sample.time);
         let (origin, direction) = self.local_ray(sample);
         // On to the near plane (`direction` has the depth 1).
         let origin = origin + direction * self.near_clip;
         let frame = match &self.fixed {
-            Some(frame) => *frame,
+            Some(pose) => pose.frame,
             None => CameraFrame::new(&self.world_from_camera.at(time)),
         };
         Ray::new(frame.point(origin), frame.vector(direction).normalize(), time)
@@ -188,10 +136,18 @@ impl Camera {
     /// θ is the angle between the ray and the camera's axis. A filter that is wider than the pixel is scaled to the same integral.
     #[inline]
     pub fn importance(&self, sample: &CameraSample) -> f32 {
+        if self.irradiance_area.is_none() {
+            return 1.0;
+        }
+        self.importance_along(self.local_ray(sample).1)
+    }
+
+    /// The same for a direction of camera space whose depth is 1.
+    #[inline]
+    fn importance_along(&self, direction: Vec3) -> f32 {
         let Some(area) = self.irradiance_area else {
             return 1.0;
         };
-        let (_, direction) = self.local_ray(sample);
         let cos_squared = 1.0 / direction.length_squared();
         if self.perspective {
             area * cos_squared * cos_squared
@@ -211,18 +167,29 @@ impl Camera {
         };
         if self.lens_radius > 0.0 {
             let focus = origin + direction * self.focal_distance;
-            let lens = self.aperture.sample(sample.lens) * self.lens_radius;
-            origin += lens.extend(0.0);
+            origin += self.lens_point(sample.lens).extend(0.0);
             direction = (focus - origin) / self.focal_distance;
         }
         (origin, direction)
+    }
+
+    /// The point of the lens that the numbers `u` choose.
+    #[inline]
+    fn lens_point(&self, u: Vec2) -> Vec2 {
+        self.aperture.sample(u) * self.lens_radius
+    }
+
+    /// The area of a pixel on the screen plane.
+    #[inline]
+    fn pixel_area(&self) -> f32 {
+        (self.screen_per_pixel.x * self.screen_per_pixel.y).abs()
     }
 
     /// How wide the ray through the point `film` (see [`CameraSample::film`]) is, if it stands for a square of `scale` pixels a
     /// side. The lens does not matter: what is out of focus is filtered by its rays.
     #[inline]
     pub fn ray_cone(&self, film: Vec2, scale: f32) -> RayCone {
-        let pixel = scale * (self.screen_per_pixel.x * self.screen_per_pixel.y).abs().sqrt();
+        let pixel = scale * self.pixel_area().sqrt();
         if !self.perspective {
             return RayCone {
                 width: pixel,

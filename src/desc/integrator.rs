@@ -18,6 +18,10 @@ pub enum IntegratorKind {
     Path(PathDesc),
     /// The rendering equation taken literally, the oracle.
     Kajiya(KajiyaDesc),
+    /// Bidirectional path tracing, its strategies weighed by this.
+    Bdpt(Heuristic),
+    /// From the lights to the camera.
+    LightTracer,
 }
 
 /// Parameters of [`IntegratorKind::Path`].

@@ -65,6 +65,8 @@ pub struct PixelFilter {
 struct FilterAxis {
     radius: f64,
     integral: f64,
+    /// A bound of the magnitude of the value over the integral.
+    peak: f64,
     /// For filters without a closed-form inverse: proposals in proportion to |value|, nearly.
     table: Option<PiecewiseConstant1D>,
 }
@@ -85,6 +87,30 @@ impl PixelFilter {
     /// Half the width of the support, in pixels.
     pub fn radius(&self) -> Vec2 {
         Vec2::new(self.axes[0].radius as f32, self.axes[1].radius as f32)
+    }
+
+    /// The same in double precision, for columns and for rows.
+    pub(super) fn radii(&self) -> [f64; 2] {
+        [self.axes[0].radius, self.axes[1].radius]
+    }
+
+    /// A bound of the magnitude of [`PixelFilter::evaluate`].
+    pub(super) fn peak(&self) -> f64 {
+        self.axes[0].peak * self.axes[1].peak
+    }
+
+    /// The filter over its integral, per pixel area, at an offset from the pixel's centre: 1 in the whole pixel for a box of radius
+    /// 1/2. It integrates to 1, as the mean of [`FilterSample::weight`] is 1. 0 outside of the support.
+    #[inline]
+    pub fn evaluate(&self, offset: Vec2) -> f32 {
+        let [x, y] = self.axes.each_ref();
+        (x.evaluate(self.kind, f64::from(offset.x)) * y.evaluate(self.kind, f64::from(offset.y))) as f32
+    }
+
+    /// The factor of [`PixelFilter::evaluate`] for the offset `x` along an axis, 0 for columns and 1 for rows.
+    #[inline]
+    pub(super) fn evaluate_axis(&self, axis: usize, x: f64) -> f64 {
+        self.axes[axis].evaluate(self.kind, x)
     }
 
     /// Samples an offset.
@@ -108,27 +134,35 @@ impl FilterAxis {
         if !integral.is_finite() || integral.abs() < 1e-9 * radius {
             return None;
         }
+        // The largest value in a cell, so that the density is positive wherever the filter is not zero.
+        let largest = |cell: usize| {
+            let (left, right) = (center(cell) - 0.5 * width, center(cell) + 0.5 * width);
+            [left, center(cell), right]
+                .map(|x| kind.evaluate(x.clamp(-radius, radius), radius).abs())
+                .into_iter()
+                .fold(0.0, f64::max)
+        };
+        // Filters are smooth: between the points that were looked at they do not rise to twice that.
+        let peak = 2.0 * (0..cells).map(largest).fold(0.0, f64::max) / integral.abs();
         let table = match kind {
             FilterKind::Box | FilterKind::Triangle => None,
             _ => {
-                // The largest value in a cell, so that the density is positive wherever the filter is not zero.
-                let values: Vec<f32> = (0..cells)
-                    .map(|cell| {
-                        let (left, right) = (center(cell) - 0.5 * width, center(cell) + 0.5 * width);
-                        [left, center(cell), right]
-                            .map(|x| kind.evaluate(x.clamp(-radius, radius), radius).abs())
-                            .into_iter()
-                            .fold(0.0, f64::max) as f32
-                    })
-                    .collect();
+                let values: Vec<f32> = (0..cells).map(|cell| largest(cell) as f32).collect();
                 Some(PiecewiseConstant1D::new(&values, -radius as f32, radius as f32)?)
             }
         };
         Some(Self {
             radius,
             integral,
+            peak,
             table,
         })
+    }
+
+    /// The filter's value over its integral.
+    #[inline]
+    fn evaluate(&self, kind: FilterKind, x: f64) -> f64 {
+        kind.evaluate(x, self.radius) / self.integral
     }
 
     /// An offset, and the filter's value over its integral and the density.
@@ -137,7 +171,7 @@ impl FilterAxis {
         match (&self.table, kind) {
             (Some(table), _) => {
                 let (x, pdf, _) = table.sample(u);
-                let value = kind.evaluate(f64::from(x), self.radius) / self.integral;
+                let value = self.evaluate(kind, f64::from(x));
                 (x, (value / f64::from(pdf)) as f32)
             }
             (None, FilterKind::Triangle) => (warp::sample_tent(u, self.radius as f32), 1.0),

@@ -2,10 +2,12 @@
 
 mod filter;
 mod sensor;
+mod splats;
 mod sums;
 
 pub use crate::desc::{FilterKind, PixelRect};
 pub use filter::{FilterSample, PixelFilter};
 pub use sensor::{Sensor, SensorSpec};
+pub use splats::Splat;
 pub(crate) use sums::lock;
 pub use sums::{Film, TILE_SIZE, TileSums};

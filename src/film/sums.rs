@@ -2,6 +2,7 @@
 //! not matter: the image has the same bits for any number of threads and any split of the samples.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::desc::PixelRect;
 
@@ -18,17 +19,19 @@ struct PixelSums {
 /// The sums of the pixels of a tile that lie in the film.
 #[derive(Clone, Debug)]
 pub struct TileSums {
-    rect: PixelRect,
+    pub(super) rect: PixelRect,
     pixels: Vec<PixelSums>,
+    /// What light paths brought, if the film takes it: linear RGB, in units of 2^-64; else empty.
+    pub(super) splats: Vec<[i128; 3]>,
     dropped: u64,
 }
 
-/// The greatest magnitude that is added: 2^62 of them still fit.
-const LARGEST: f64 = (1_u64 << 62) as f64;
+/// Values of this magnitude or more are not added: 2^23 of them would just fit into a sum.
+pub(super) const LARGEST: f64 = (1_u64 << 40) as f64;
 
 /// `value` in units of 2^-64, rounded to an even number of them towards 0; `None` if it is not finite or beyond [`LARGEST`].
 #[inline]
-fn quantize(value: f64) -> Option<i128> {
+pub(super) fn quantize(value: f64) -> Option<i128> {
     (value.abs() < LARGEST).then(|| {
         // Both parts are exact, and so is scaling by a power of two. The fraction may be negative: 2^63 of them fit a signed integer.
         let whole = value as i64;
@@ -48,13 +51,19 @@ impl TileSums {
         self.rect
     }
 
+    /// Where a pixel of it is in its arrays.
+    #[inline]
+    pub(super) fn index(&self, x: u32, y: u32) -> usize {
+        ((y - self.rect.y0) * self.rect.width() + (x - self.rect.x0)) as usize
+    }
+
     /// Adds one camera sample of pixel (x, y), which must lie in [`TileSums::rect`]: `weight` of the pixel filter, and linear
     /// `rgb`, `None` for a sample that was dropped. A dropped sample, or one whose colour is not finite or out of range, counts
     /// as black; whether it did is returned.
     #[inline]
     pub fn add(&mut self, x: u32, y: u32, rgb: Option<[f32; 3]>, weight: f32) -> bool {
-        let index = (y - self.rect.y0) * self.rect.width() + (x - self.rect.x0);
-        let sums = &mut self.pixels[index as usize];
+        let index = self.index(x, y);
+        let sums = &mut self.pixels[index];
         let w = f64::from(weight);
         sums.weight += quantize(w).unwrap_or(0);
         let quantized = rgb.and_then(|[r, g, b]| {
@@ -77,6 +86,22 @@ impl TileSums {
             }
         }
     }
+
+    /// The colour of a pixel, where there were `light_paths`.
+    fn develop(&self, x: u32, y: u32, light_paths: f64) -> [f32; 3] {
+        let index = self.index(x, y);
+        let sums = &self.pixels[index];
+        let splats = self.splats.get(index).copied().unwrap_or_default();
+        let weight = dequantize(sums.weight);
+        std::array::from_fn(|channel| {
+            let mean = if sums.weight == 0 {
+                0.0
+            } else {
+                dequantize(sums.rgb[channel]) / weight
+            };
+            (mean + dequantize(splats[channel]) / light_paths) as f32
+        })
+    }
 }
 
 /// The sums of all pixels of a crop, by tile.
@@ -85,6 +110,9 @@ pub struct Film {
     resolution: [u32; 2],
     crop: PixelRect,
     tiles: Vec<Mutex<TileSums>>,
+    /// Whether it has sums for splats.
+    takes_splats: bool,
+    light_paths: AtomicU64,
 }
 
 impl Film {
@@ -109,6 +137,7 @@ impl Film {
                     tiles.push(Mutex::new(TileSums {
                         rect,
                         pixels,
+                        splats: Vec::new(),
                         dropped: 0,
                     }));
                 }
@@ -118,7 +147,34 @@ impl Film {
             resolution,
             crop,
             tiles,
+            takes_splats: false,
+            light_paths: AtomicU64::new(0),
         }
+    }
+
+    /// The same film with sums for what light paths bring, see [`Film::splat`].
+    pub fn with_splats(mut self) -> Self {
+        for tile in &mut self.tiles {
+            let tile = tile.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
+            tile.splats.resize(tile.pixels.len(), [0; 3]);
+        }
+        self.takes_splats = true;
+        self
+    }
+
+    /// Whether it has such sums.
+    pub fn takes_splats(&self) -> bool {
+        self.takes_splats
+    }
+
+    /// Counts `paths` more light paths of the whole picture, whether or not they brought anything.
+    pub fn add_light_paths(&self, paths: u64) {
+        self.light_paths.fetch_add(paths, Ordering::Relaxed);
+    }
+
+    /// All light paths that were counted.
+    pub fn light_paths(&self) -> u64 {
+        self.light_paths.load(Ordering::Relaxed)
     }
 
     /// Width and height of the whole picture.
@@ -141,24 +197,18 @@ impl Film {
         self.tiles.iter().map(|tile| lock(tile).dropped).sum()
     }
 
-    /// Linear RGB, row by row from the top left pixel of the crop: the weighted means; black where no weight fell.
+    /// Linear RGB, row by row from the top left pixel of the crop: the weighted means of camera samples, 0 where no weight fell, and the
+    /// mean over all light paths of what they brought, 0 if there were none.
     pub fn develop(&self) -> Vec<f32> {
         let mut image = vec![0.0; 3 * self.crop.area() as usize];
+        let light_paths = self.light_paths().max(1) as f64;
         for tile in &self.tiles {
             let tile = lock(tile);
-            let mut pixels = tile.pixels.iter();
             for y in tile.rect.y0..tile.rect.y1 {
                 for x in tile.rect.x0..tile.rect.x1 {
-                    let Some(sums) = pixels.next() else { continue };
-                    if sums.weight == 0 {
-                        continue;
-                    }
                     let row = u64::from(y - self.crop.y0) * u64::from(self.crop.width());
                     let index = 3 * (row + u64::from(x - self.crop.x0)) as usize;
-                    let weight = dequantize(sums.weight);
-                    for (out, &sum) in image[index..index + 3].iter_mut().zip(&sums.rgb) {
-                        *out = (dequantize(sum) / weight) as f32;
-                    }
+                    image[index..index + 3].copy_from_slice(&tile.develop(x, y, light_paths));
                 }
             }
         }

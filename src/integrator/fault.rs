@@ -16,6 +16,12 @@ pub enum Fault {
     EtaForgotten,
     /// The weight of a BSDF sample takes the light's density by area for that by solid angle.
     PdfInWrongMeasure,
+    /// Bidirectional weights without the strategies of light samples and light subpaths.
+    StrategyLeftOut,
+    /// Light subpaths are scattered by the BSDF of shading normals, not by its adjoint.
+    AdjointForgotten,
+    /// Bidirectional weights count connections of vertices that scatter by delta lobes.
+    DeltaConnected,
 }
 
 impl Fault {

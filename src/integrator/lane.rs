@@ -16,6 +16,8 @@ pub(super) struct Slot {
     pub filter_weight: f32,
     /// What the radiance counts besides, see [`crate::camera::Camera::importance`].
     pub importance: f32,
+    /// Scene time.
+    pub time: f32,
     /// Its wavelengths.
     pub lambda: Wavelengths,
     /// Radiance gathered so far, not divided by the density of the wavelengths.

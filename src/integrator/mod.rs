@@ -11,7 +11,12 @@
 //! | 1 | wavelength, time |
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
 //! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
+//!
+//! A light path has a [branch](crate::sampling::SampleStream::branch) of its sample's numbers, with the same groups at scattering events:
+//! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;
+//! direction from it.
 
+mod bdpt;
 mod fault;
 mod kajiya;
 mod lane;
@@ -24,13 +29,14 @@ mod wave;
 
 use std::time::{Duration, Instant};
 
+pub use bdpt::{BdptIntegrator, Strategies};
 #[doc(hidden)]
 pub use fault::Fault;
 pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
 pub use schedule::{Progress, Silent};
 
-use crate::desc::{IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
+use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
 use crate::film::Film;
 use crate::scene::{Scene, View};
 
@@ -41,11 +47,13 @@ pub enum Integrator {
     Path(PathIntegrator),
     /// The rendering equation taken literally.
     Kajiya(KajiyaIntegrator),
+    /// Bidirectional path tracing, or light tracing.
+    Bdpt(BdptIntegrator),
 }
 
 impl Integrator {
     /// The names by which a scene or a command line chooses one.
-    pub const NAMES: &[&str] = &["path", "kajiya"];
+    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath"];
 
     /// The one that a scene asks for.
     pub fn from_desc(desc: &IntegratorDesc) -> Self {
@@ -72,6 +80,18 @@ impl Integrator {
                 branching,
                 distribution,
             }),
+            IntegratorKind::Bdpt(heuristic) => Self::Bdpt(BdptIntegrator {
+                max_depth,
+                heuristic,
+                strategies: Strategies::All,
+                fault: Fault::None,
+            }),
+            IntegratorKind::LightTracer => Self::Bdpt(BdptIntegrator {
+                max_depth,
+                heuristic: Heuristic::default(),
+                strategies: Strategies::LightTracer,
+                fault: Fault::None,
+            }),
         }
     }
 
@@ -82,9 +102,13 @@ impl Integrator {
         let kind = match name {
             _ if name == self.name() => return self,
             "kajiya" => IntegratorKind::Kajiya(KajiyaDesc::default()),
+            "bdpt" => IntegratorKind::Bdpt(Heuristic::default()),
+            "lightpath" => IntegratorKind::LightTracer,
             _ => IntegratorKind::Path(PathDesc::default()),
         };
-        let (Self::Path(PathIntegrator { max_depth, .. }) | Self::Kajiya(KajiyaIntegrator { max_depth, .. })) = self;
+        let (Self::Path(PathIntegrator { max_depth, .. })
+        | Self::Kajiya(KajiyaIntegrator { max_depth, .. })
+        | Self::Bdpt(BdptIntegrator { max_depth, .. })) = self;
         Self::from_desc(&IntegratorDesc {
             max_depth,
             light_sampler: LightSamplerKind::default(),
@@ -97,6 +121,10 @@ impl Integrator {
         match self {
             Self::Path(_) => "path",
             Self::Kajiya(_) => "kajiya",
+            Self::Bdpt(bdpt) => match bdpt.strategies {
+                Strategies::All => "bdpt",
+                Strategies::LightTracer => "lightpath",
+            },
         }
     }
 
@@ -106,6 +134,7 @@ impl Integrator {
         match &mut self {
             Self::Path(path) => path.max_depth = max_depth,
             Self::Kajiya(kajiya) => kajiya.max_depth = max_depth,
+            Self::Bdpt(bdpt) => bdpt.max_depth = max_depth,
         }
         self
     }
@@ -115,17 +144,26 @@ impl Integrator {
     pub fn with_strategy(self, strategy: Strategy) -> Option<Self> {
         match self {
             Self::Path(path) => Some(Self::Path(PathIntegrator { strategy, ..path })),
-            Self::Kajiya(_) => None,
+            Self::Kajiya(_) | Self::Bdpt(_) => None,
         }
     }
 
-    /// Renders all samples of `view` onto `film`, on the threads of the rayon pool that calls. The image does not depend on how
-    /// many those are.
+    /// An empty film for what it does with `view`.
+    pub fn film(&self, view: &View) -> Film {
+        match self {
+            Self::Path(_) | Self::Kajiya(_) => view.film(),
+            Self::Bdpt(_) => view.film().with_splats(),
+        }
+    }
+
+    /// Renders all samples of `view` onto `film`, one of [`Integrator::film`], on the threads of the rayon pool that calls. The image
+    /// does not depend on how many those are.
     pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
         let start = Instant::now();
         let mut stats = match self {
             Self::Path(path) => schedule::render_tiles(scene, view, film, path, progress),
             Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, progress),
+            Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, progress),
         };
         stats.render_time = start.elapsed();
         stats

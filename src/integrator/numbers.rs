@@ -4,7 +4,7 @@ use crate::geometry::LANES;
 use crate::math::{Vec2, Vectorizer};
 use crate::sampling::SampleStream;
 
-/// Groups of random numbers that the camera sample uses.
+/// Groups of random numbers that the camera sample uses; of a light path's branch, those of its start.
 pub(super) const FILM_GROUP: u32 = 0;
 pub(super) const DETECTOR_GROUP: u32 = 1;
 /// The branch of a sample's numbers that its light path has, which shares the groups of the scattering events.
@@ -42,6 +42,29 @@ impl EventNumbers {
             roulette,
             bsdf: Vec2::new(bsdf_x, bsdf_y),
             lobe,
+        }
+    }
+}
+
+/// The random numbers that start a light path, of its branch of a sample's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EmissionNumbers {
+    /// Point of the light.
+    pub position: Vec2,
+    /// Which light.
+    pub which_light: f32,
+    /// Direction from it.
+    pub direction: Vec2,
+}
+
+impl EmissionNumbers {
+    /// Those of a light path.
+    pub fn draw(stream: &SampleStream) -> Self {
+        let [position_x, position_y, which_light, _] = stream.draw4(FILM_GROUP);
+        Self {
+            position: Vec2::new(position_x, position_y),
+            which_light,
+            direction: stream.draw2(DETECTOR_GROUP).into(),
         }
     }
 }

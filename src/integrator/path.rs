@@ -133,7 +133,10 @@ impl PathIntegrator {
         if self.fault.is(Fault::EtaForgotten) {
             next.beta *= sample.eta * sample.eta;
         }
-        let survival = self.survival(stage.depth, &next);
+        // A path that was split is as worthy of going on as the whole.
+        let whole = if lane.split { self.splitting as f32 } else { 1.0 };
+        let throughput = next.beta.max_value() * next.eta_scale * whole;
+        let survival = survival(stage.depth, throughput, self.max_depth.is_none());
         if survival < 1.0 {
             if numbers.roulette >= survival {
                 return;
@@ -141,23 +144,6 @@ impl PathIntegrator {
             next.beta *= 1.0 / survival;
         }
         stage.go_on(&next, &si.spawn_ray(sample.wi));
-    }
-
-    /// The probability with which a path goes on after the scattering event `depth`: the square root of its throughput, which on the
-    /// Cornell box needs a sixth fewer rays than the throughput itself for the same error. A path that was split is as worthy of
-    /// going on as the whole.
-    fn survival(&self, depth: u32, lane: &PathLane) -> f32 {
-        if depth < FIRST_ROULETTE_DEPTH {
-            return 1.0;
-        }
-        let whole = if lane.split { self.splitting as f32 } else { 1.0 };
-        let throughput = (lane.beta.max_value() * lane.eta_scale * whole).sqrt();
-        let limit = if self.max_depth.is_none() && depth >= LAST_SURVIVAL_DEPTH {
-            LAST_SURVIVAL
-        } else {
-            1.0
-        };
-        throughput.min(limit)
     }
 
     /// Adds what the environment sends along a ray that left the scene.
@@ -249,6 +235,21 @@ impl PathIntegrator {
         stage.connect(lane, si, &sample, lane.beta * bsdf.f * sample.li * factor);
         Some(())
     }
+}
+
+/// The probability with which a path of this throughput goes on after the scattering event `depth`: its square root, which on the
+/// Cornell box needs a sixth fewer rays than the throughput itself for the same error.
+#[inline]
+pub(super) fn survival(depth: u32, throughput: f32, is_unlimited: bool) -> f32 {
+    if depth < FIRST_ROULETTE_DEPTH {
+        return 1.0;
+    }
+    let limit = if is_unlimited && depth >= LAST_SURVIVAL_DEPTH {
+        LAST_SURVIVAL
+    } else {
+        1.0
+    };
+    throughput.sqrt().min(limit)
 }
 
 /// |cos| at the point of a light; 1 where it has no surface.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use super::RenderStats;
 use super::stage::Estimator;
 use super::wave::Wave;
-use crate::film::{Film, TileSums, lock};
+use crate::film::{Film, PixelRect, TILE_SIZE, TileSums, lock};
 use crate::scene::{Scene, View};
 
 /// Hears how far a render is.
@@ -29,8 +29,60 @@ const SAMPLES_PER_UNIT: u32 = 16;
 
 /// One tile and a range of samples.
 struct Unit<'a> {
-    tile: &'a Mutex<TileSums>,
+    place: TilePlace<'a>,
     samples: Range<u32>,
+}
+
+/// Where paths of a tile start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TilePlace<'a> {
+    /// The sums of the pixels that the film has of it; `None` if it has none.
+    pub tile: Option<&'a Mutex<TileSums>>,
+    /// Those pixels; empty if there are none.
+    pub wanted: PixelRect,
+    /// The pixels that have light paths, or else that the film has: all of the tile that are in the picture.
+    pub whole: PixelRect,
+}
+
+impl<'a> TilePlace<'a> {
+    /// The tiles that the film has a part of.
+    fn of_crop(film: &'a Film) -> Vec<Self> {
+        let place = |tile: &'a Mutex<TileSums>| {
+            let wanted = lock(tile).rect();
+            Self {
+                tile: Some(tile),
+                wanted,
+                whole: wanted,
+            }
+        };
+        film.tiles().iter().map(place).collect()
+    }
+
+    /// All tiles of the picture: a crop shows what the light paths of the whole bring to it.
+    fn all_of(film: &'a Film) -> Vec<Self> {
+        let [width, height] = film.resolution();
+        let corners = (0..height)
+            .step_by(TILE_SIZE as usize)
+            .flat_map(|y0| (0..width).step_by(TILE_SIZE as usize).map(move |x0| [x0, y0]));
+        let of_crop = Self::of_crop(film);
+        let place = |[x0, y0]: [u32; 2]| {
+            let whole = PixelRect {
+                x0,
+                y0,
+                x1: (x0 + TILE_SIZE).min(width),
+                y1: (y0 + TILE_SIZE).min(height),
+            };
+            let in_crop = of_crop
+                .iter()
+                .find(|place| whole.contains(place.wanted.x0, place.wanted.y0));
+            Self {
+                tile: in_crop.and_then(|place| place.tile),
+                wanted: in_crop.map_or(PixelRect { x1: x0, ..whole }, |place| place.wanted),
+                whole,
+            }
+        };
+        corners.map(place).collect()
+    }
 }
 
 /// Renders all samples of all tiles on the threads of the current rayon pool.
@@ -42,24 +94,29 @@ pub(super) fn render_tiles<E: Estimator>(
     progress: &dyn Progress,
 ) -> RenderStats {
     let Range { start, end } = view.samples;
+    let places = if E::LIGHT_PATHS {
+        TilePlace::all_of(film)
+    } else {
+        TilePlace::of_crop(film)
+    };
     let units: Vec<Unit> = (start..end)
         .step_by(SAMPLES_PER_UNIT as usize)
         .flat_map(|first| {
             let samples = first..(first + SAMPLES_PER_UNIT).min(end);
-            film.tiles().iter().map(move |tile| Unit {
-                tile,
+            places.iter().map(move |&place| Unit {
+                place,
                 samples: samples.clone(),
             })
         })
         .collect();
-    let total = film.crop().area() * u64::from(end - start);
+    let pixels: u64 = places.iter().map(|place| place.whole.area()).sum();
+    let total = pixels * u64::from(end - start);
     let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
     let per_thread = rayon::broadcast(|_| {
-        let mut wave = Wave::new(scene, view, estimator);
+        let mut wave = Wave::new(scene, view, film, estimator);
         while let Some(unit) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let rect = lock(unit.tile).rect();
-            wave.render(unit.tile, rect, unit.samples.clone());
-            let samples = rect.area() * unit.samples.len() as u64;
+            wave.render(unit.place, unit.samples.clone());
+            let samples = unit.place.whole.area() * unit.samples.len() as u64;
             progress.advance(done.fetch_add(samples, Ordering::Relaxed) + samples, total);
         }
         wave.into_stats()

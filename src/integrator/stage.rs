@@ -162,7 +162,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
         stats.shadow_rays += (self.shadows.len() + self.splats.len()) as u64;
         let (slots, landed) = (&mut *self.slots, &mut *self.landed);
         stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, value }| {
-            slots[slot as usize].l += value
+            slots[slot as usize].l += value;
         });
         stats.backend_time += self.splats.flush(self.scene, |splat| landed.push(splat));
     }

@@ -15,12 +15,13 @@ use std::time::Instant;
 
 use super::lane::{Batch, Lane, NO_SLOT, Slot};
 use super::numbers::{DETECTOR_GROUP, EventLanes, FILM_GROUP, LIGHT_BRANCH};
+use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
 use super::stage::{Estimator, Stage, Vertex};
 use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
-use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
+use crate::film::{Film, PixelRect, Splat, TILE_SIZE, TileSums, lock};
 use crate::geometry::{HitPacket, LANES, Ray, RayCone, SurfaceLanes};
 use crate::material::TransportMode;
 use crate::math::{Vec2, Vectorizer};
@@ -38,6 +39,7 @@ pub(super) const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
 pub(super) struct Wave<'s, E: Estimator> {
     scene: &'s Scene,
     view: &'s View,
+    film: &'s Film,
     estimator: &'s E,
     /// Whether whole tiles are rendered, as packets' answers depend on all their lanes.
     whole_tiles: bool,
@@ -54,16 +56,18 @@ pub(super) struct Wave<'s, E: Estimator> {
     splats: ShadowQueue<SplatContribution>,
     /// What light paths have brought to the film.
     landed: Vec<SplatContribution>,
+    splatted: Vec<Splat>,
     stats: RenderStats,
 }
 
 impl<'s, E: Estimator> Wave<'s, E> {
-    pub fn new(scene: &'s Scene, view: &'s View, estimator: &'s E) -> Self {
+    pub fn new(scene: &'s Scene, view: &'s View, film: &'s Film, estimator: &'s E) -> Self {
         let accel = scene.accel();
         let independent = |kind| accel.is_mate_independent(kind);
         Self {
             scene,
             view,
+            film,
             estimator,
             whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
             vectorizer: Vectorizer::default(),
@@ -76,6 +80,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             shadows: ShadowQueue::default(),
             splats: ShadowQueue::default(),
             landed: Vec::new(),
+            splatted: Vec::new(),
             stats: RenderStats::default(),
         }
     }
@@ -85,23 +90,27 @@ impl<'s, E: Estimator> Wave<'s, E> {
         self.stats
     }
 
-    /// Renders the samples `samples` of the pixels `rect` of a tile.
-    pub fn render(&mut self, tile: &Mutex<TileSums>, rect: PixelRect, samples: Range<u32>) {
-        let traced = self.traced_rect(rect);
+    /// Renders the samples `samples` of a tile.
+    pub fn render(&mut self, place: TilePlace<'_>, samples: Range<u32>) {
+        let pixels = Pixels {
+            wanted: place.wanted,
+            traced: self.traced_rect(place.wanted),
+            light: if E::LIGHT_PATHS { place.whole } else { place.wanted },
+        };
         let at_once = if self.whole_tiles {
             1
         } else {
-            (u64::from(WAVE_LANES) / traced.area()).max(1) as u32
+            (u64::from(WAVE_LANES) / pixels.all().area()).max(1) as u32
         };
         for first in samples.clone().step_by(at_once as usize) {
-            let camera_rays = self.generate(rect, traced, first..(first + at_once).min(samples.end));
+            let camera_rays = self.generate(&pixels, first..(first + at_once).min(samples.end));
             if E::LIGHT_PATHS {
                 self.emit();
                 self.finish_pending();
             }
             self.pending.push(camera_rays);
             self.finish_pending();
-            self.retire(tile);
+            self.retire(place.tile);
         }
     }
 
@@ -116,6 +125,9 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// The pixels whose camera rays are traced: whole blocks, or the whole tile, within the picture.
     fn traced_rect(&self, rect: PixelRect) -> PixelRect {
+        if rect.area() == 0 {
+            return rect;
+        }
         let [step_x, step_y] = if self.whole_tiles { [TILE_SIZE; 2] } else { BLOCK };
         let [width, height] = self.view.resolution;
         PixelRect {
@@ -127,28 +139,23 @@ impl<'s, E: Estimator> Wave<'s, E> {
     }
 
     /// Makes slots, and the batch of camera rays.
-    fn generate(&mut self, rect: PixelRect, traced: PixelRect, samples: Range<u32>) -> Batch<E::State> {
+    fn generate(&mut self, pixels: &Pixels, samples: Range<u32>) -> Batch<E::State> {
+        let all = pixels.all();
         self.slots.clear();
         let mut batch = self.spare.pop().unwrap_or_default();
         batch.restart(TransportMode::Radiance, 0);
         for sample in samples {
-            for y in (traced.y0..traced.y1).step_by(BLOCK[1] as usize) {
-                for x in (traced.x0..traced.x1).step_by(BLOCK[0] as usize) {
-                    self.generate_block(&mut batch, rect, traced, [x, y], sample);
+            for y in (all.y0..all.y1).step_by(BLOCK[1] as usize) {
+                for x in (all.x0..all.x1).step_by(BLOCK[0] as usize) {
+                    self.generate_block(&mut batch, pixels, [x, y], sample);
                 }
             }
         }
         batch
     }
 
-    fn generate_block(
-        &mut self,
-        batch: &mut Batch<E::State>,
-        rect: PixelRect,
-        traced: PixelRect,
-        corner: [u32; 2],
-        sample: u32,
-    ) {
+    fn generate_block(&mut self, batch: &mut Batch<E::State>, pixels: &Pixels, corner: [u32; 2], sample: u32) {
+        let Pixels { wanted, traced, light } = *pixels;
         let pixels: [[u32; 2]; LANES] =
             std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
         let streams = pixels.map(|[x, y]| {
@@ -168,20 +175,27 @@ impl<'s, E: Estimator> Wave<'s, E> {
                 cone: RayCone::default(),
                 state: self.estimator.camera_state(self.view, &ray),
             };
-            if traced.contains(x, y) {
+            let is_traced = traced.contains(x, y);
+            let is_wanted = wanted.contains(x, y) || (self.whole_tiles && is_traced);
+            let has_slot = is_wanted || light.contains(x, y);
+            if is_traced || has_slot {
                 let of = |group: &[[f32; LANES]; 4]| group.map(|numbers| numbers[i]);
                 let (mut slot, camera_ray, cone) =
                     camera_slot(self.scene, self.view, [x, y], sample, of(&film), of(&detector));
                 lane.cone = cone;
-                if camera_ray.is_valid() {
+                if !is_traced {
+                    // A light path only.
+                } else if camera_ray.is_valid() {
                     ray = camera_ray;
                     lane.state = self.estimator.camera_state(self.view, &ray);
                     self.stats.camera_rays += 1;
                 } else {
                     slot.broken = true;
                 }
-                if self.whole_tiles || rect.contains(x, y) {
+                if is_wanted {
                     lane.slot = self.slots.len() as u32;
+                }
+                if has_slot {
                     self.slots.push(slot);
                 }
             }
@@ -297,9 +311,36 @@ impl<'s, E: Estimator> Wave<'s, E> {
         (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
     }
 
-    /// Turns slots into sensor values.
-    fn retire(&mut self, tile: &Mutex<TileSums>) {
-        let mut sums = lock(tile);
+    /// Turns slots into sensor values, and what light paths brought to the film into splats.
+    fn retire(&mut self, tile: Option<&Mutex<TileSums>>) {
+        if let Some(tile) = tile {
+            self.retire_slots(&mut lock(tile));
+        }
+        if E::LIGHT_PATHS {
+            self.retire_splats();
+        }
+    }
+
+    fn retire_splats(&mut self) {
+        for splat in self.landed.drain(..) {
+            let slot = &self.slots[splat.slot as usize];
+            if slot.broken || !splat.value.is_finite() || splat.value.min_value() < 0.0 {
+                self.stats.drop_sample(DroppedSample {
+                    pixel: slot.pixel,
+                    sample: slot.sample,
+                });
+                continue;
+            }
+            self.splatted.push(Splat {
+                film: splat.film,
+                rgb: self.view.sensor.to_rgb(splat.value, &slot.lambda),
+            });
+        }
+        self.stats.dropped_samples += self.film.splat(&self.view.filter, &mut self.splatted);
+        self.film.add_light_paths(self.slots.len() as u64);
+    }
+
+    fn retire_slots(&mut self, sums: &mut TileSums) {
         let rect = sums.rect();
         for slot in &self.slots {
             let [x, y] = slot.pixel;
@@ -314,6 +355,32 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     sample: slot.sample,
                 });
             }
+        }
+    }
+}
+
+/// The pixels of a tile.
+struct Pixels {
+    /// That the film wants.
+    wanted: PixelRect,
+    /// Whose camera rays are traced.
+    traced: PixelRect,
+    /// That have light paths, if there are any.
+    light: PixelRect,
+}
+
+impl Pixels {
+    /// All of them.
+    fn all(&self) -> PixelRect {
+        let (a, b) = (self.traced, self.light);
+        if a.area() == 0 {
+            return b;
+        }
+        PixelRect {
+            x0: a.x0.min(b.x0),
+            y0: a.y0.min(b.y0),
+            x1: a.x1.max(b.x1),
+            y1: a.y1.max(b.y1),
         }
     }
 }
@@ -346,6 +413,7 @@ fn camera_slot(
         sample,
         filter_weight: filter.weight,
         importance: view.camera.importance(&camera_sample),
+        time: ray.time,
         lambda,
         l: SampledSpectrum::ZERO,
         broken: false,

@@ -3,14 +3,16 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::emitter::{Emitter, EmitterShape, SamplePlace};
+use super::emission::{sample_side, side_pdf};
+use super::emitter::{Emitter, EmitterShape, SamplePlace, SurfaceSample};
 use super::image::EmissionImage;
 use super::moving::{MovingEmitter, sphere_shape};
-use super::{LightBounds, LightDensity, LightEnd, LightSample};
+use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
 use crate::geometry::Sphere;
 use crate::math::{DMat3, DVec3, Vec2, Vec3};
-use crate::sampling::SolidAnglePdf;
+use crate::sampling::{AreaPdf, SolidAnglePdf};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
+use crate::texture::{FloatTexture, TextureContext};
 
 /// A surface that emits the same radiance in every direction of the side of its geometric normal, or of both.
 #[derive(Clone, Debug)]
@@ -22,7 +24,11 @@ pub struct AreaLight {
     radiance: Radiance,
     two_sided: bool,
     /// How much of the surface there is: rays pass it with the probability 1 - alpha.
-    alpha: f32,
+    alpha: FloatTexture,
+    /// If anything depends on them.
+    coordinates: Option<Arc<Coordinates>>,
+    /// Luminance, alpha included, on average over the surface; at time 0 if it moves.
+    luminance: f32,
 }
 
 /// What each point of a surface emits.
@@ -30,17 +36,8 @@ pub struct AreaLight {
 enum Radiance {
     /// The same everywhere.
     Constant(CompiledSpectrum),
-    /// By texture coordinates.
-    Image(Arc<ImageRadiance>),
-}
-
-#[derive(Clone, Debug)]
-struct ImageRadiance {
-    image: Arc<EmissionImage>,
-    scale: f32,
-    coordinates: Coordinates,
-    /// Luminance on average over the surface.
-    mean: f32,
+    /// By texture coordinates, times a factor.
+    Image(Arc<EmissionImage>, f32),
 }
 
 /// Where texture coordinates of sampled points come from.
@@ -56,14 +53,26 @@ impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
         let area = shape.area();
-        Some(Self {
-            emitter: Emitter::new(shape)?,
+        Some(Self::of(Emitter::new(shape)?, area, None, radiance, two_sided))
+    }
+
+    fn of(
+        emitter: Emitter,
+        area: f32,
+        motion: Option<Arc<MovingEmitter>>,
+        radiance: CompiledSpectrum,
+        two_sided: bool,
+    ) -> Self {
+        Self {
+            emitter,
             area,
-            motion: None,
+            motion,
+            luminance: radiance.photometric_luminance(),
             radiance: Radiance::Constant(radiance),
             two_sided,
-            alpha: 1.0,
-        })
+            alpha: FloatTexture::Constant(1.0),
+            coordinates: None,
+        }
     }
 
     /// A sphere that emits; an ellipsoid if its transform makes it one.
@@ -74,54 +83,56 @@ impl AreaLight {
     /// A surface that moves. `None` if it has no area at time 0.
     pub fn moving(emitter: MovingEmitter, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
         let at_start = emitter.at(0.0)?;
-        Some(Self {
-            area: at_start.shape.area(),
-            emitter: at_start,
-            motion: Some(Arc::new(emitter)),
-            radiance: Radiance::Constant(radiance),
-            two_sided,
-            alpha: 1.0,
-        })
+        let area = at_start.shape.area();
+        Some(Self::of(at_start, area, Some(Arc::new(emitter)), radiance, two_sided))
     }
 
     /// With the radiances of an image by texture coordinates instead: (0, 0) is its lower left corner.
     #[must_use]
     pub fn with_image(self, image: Arc<EmissionImage>, coordinates: Coordinates) -> Self {
-        let mean = mean_luminance(&image, &coordinates);
-        let scale = 1.0;
         Self {
-            radiance: Radiance::Image(Arc::new(ImageRadiance {
-                image,
-                scale,
-                coordinates,
-                mean,
-            })),
+            radiance: Radiance::Image(image, 1.0),
+            coordinates: Some(Arc::new(coordinates)),
             ..self
         }
+        .measured()
+    }
+
+    /// Lets rays pass with the probability 1 - `alpha`. As in pbrt-v4 a light whose alpha is 0 sends its light all the same, but only
+    /// light samples find it.
+    #[must_use]
+    pub fn with_alpha(self, alpha: f32) -> Self {
+        let alpha = FloatTexture::Constant(alpha.clamp(0.0, 1.0));
+        Self { alpha, ..self }.measured()
+    }
+
+    /// Lets rays pass with the probability 1 - alpha by a texture, whose values are kept in [0, 1].
+    #[must_use]
+    pub fn with_alpha_texture(self, alpha: FloatTexture, coordinates: Coordinates) -> Self {
+        Self {
+            alpha,
+            coordinates: Some(Arc::new(coordinates)),
+            ..self
+        }
+        .measured()
     }
 
     /// This light, `factor` times as bright.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        let radiance = match self.radiance {
-            Radiance::Constant(radiance) => Radiance::Constant(radiance.scaled(factor)),
-            Radiance::Image(radiance) => Radiance::Image(Arc::new(ImageRadiance {
-                scale: radiance.scale * factor,
-                ..(*radiance).clone()
-            })),
-        };
-        Self { radiance, ..self }
-    }
-
-    /// Lets rays pass with the probability 1 - `alpha`. As in pbrt-v4 a light whose alpha is 0 sends its light all the same, but only
-    /// light samples find it.
-    pub fn see_through(&mut self, alpha: f32) {
-        self.alpha = alpha;
+        Self {
+            radiance: match self.radiance {
+                Radiance::Constant(radiance) => Radiance::Constant(radiance.scaled(factor)),
+                Radiance::Image(image, scale) => Radiance::Image(image, scale * factor),
+            },
+            luminance: self.luminance * factor,
+            ..self
+        }
     }
 
     /// Whether no ray meets it.
     pub(super) fn is_delta(&self) -> bool {
-        self.alpha == 0.0
+        matches!(self.alpha, FloatTexture::Constant(alpha) if alpha <= 0.0)
     }
 
     /// Its surface area, one side; at time 0 if it moves.
@@ -142,8 +153,25 @@ impl AreaLight {
         }
         match &self.radiance {
             Radiance::Constant(radiance) => radiance.sample(lambda),
-            Radiance::Image(radiance) => radiance.image.sample_bilinear(uv, lambda) * radiance.scale,
+            Radiance::Image(image, scale) => image.sample_bilinear(uv, lambda) * *scale,
         }
+    }
+
+    /// How much of the surface there is at a point of it, as the rays that meet it find; all of one that none meets.
+    #[inline]
+    fn alpha_at(&self, p: Vec3, ng: Vec3, uv: Vec2) -> f32 {
+        match &self.alpha {
+            FloatTexture::Constant(alpha) if *alpha <= 0.0 => 1.0,
+            FloatTexture::Constant(alpha) => *alpha,
+            texture => texture.evaluate(&TextureContext::at_point(p, ng, uv)).clamp(0.0, 1.0),
+        }
+    }
+
+    /// Radiance that leaves a sampled point in direction `w`, on average over the rays that meet it and pass it.
+    #[inline]
+    fn le_of<M>(&self, sample: &SurfaceSample<M>, time: f32, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
+        let uv = self.uv(sample.at, time);
+        self.le(sample.ng, uv, w, lambda) * self.alpha_at(sample.p, sample.ng, uv)
     }
 
     /// What `ask` says of the emitter at a time; `None` if it has no area then.
@@ -166,12 +194,11 @@ impl AreaLight {
     pub(super) fn sample_li(&self, from: Vec3, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<LightSample> {
         let sample = self.at(time, |emitter| emitter.sample(from, u))?;
         let wi = (sample.p - from).try_normalize()?;
-        let li = self.le(sample.ng, self.uv(sample.at, time), -wi, lambda);
-        // Rays find an invisible light never, and others as often as they do not pass them.
+        let li = self.le_of(&sample, time, -wi, lambda);
         let (li, density) = if self.is_delta() {
             (li * (1.0 / sample.pdf.0), LightDensity::Delta)
         } else {
-            (li * self.alpha, LightDensity::Continuous(sample.pdf))
+            (li, LightDensity::Continuous(sample.pdf))
         };
         (sample.pdf.0 > 0.0 && sample.pdf.0.is_finite() && !li.is_black()).then_some(LightSample {
             li,
@@ -185,36 +212,121 @@ impl AreaLight {
         })
     }
 
+    /// A point by area, and a direction by its cosine.
+    pub(super) fn sample_le(
+        &self,
+        time: f32,
+        u_position: Vec2,
+        u_direction: Vec2,
+        lambda: &Wavelengths,
+    ) -> Option<EmissionSample> {
+        let sample = self.at(time, |emitter| emitter.sample_area(u_position))?;
+        let (p, ng) = (sample.p, sample.ng);
+        let direction = sample_side(ng, self.two_sided, u_direction);
+        let le = self.le_of(&sample, time, direction, lambda);
+        let emission = EmissionSample {
+            le: if self.is_delta() { le * (1.0 / sample.pdf.0) } else { le },
+            origin: EmissionOrigin::Surface {
+                p,
+                error: sample.error,
+                ng,
+            },
+            direction,
+            density: self.density(sample.pdf, ng, direction),
+            cos_theta: ng.dot(direction).abs(),
+        };
+        emission.checked()
+    }
+
+    /// Densities of [`Self::sample_le`] for the ray in direction `w` from the point `p` of the light at `time`, where its geometric
+    /// normal is `ng`.
+    pub(super) fn pdf_le(&self, p: Vec3, ng: Vec3, w: Vec3, time: f32) -> (AreaPdf, SolidAnglePdf) {
+        let position = self.at(time, |emitter| emitter.pdf_area(p));
+        (position.unwrap_or(AreaPdf(0.0)), side_pdf(ng, self.two_sided, w))
+    }
+
+    /// [`Self::pdf_le`]; as a light without extent if no ray meets it.
+    pub(super) fn emission_density(&self, p: Vec3, ng: Vec3, w: Vec3, time: f32) -> EmissionDensity {
+        let (position, _) = self.pdf_le(p, ng, w, time);
+        self.density(position, ng, w)
+    }
+
+    fn density(&self, position: AreaPdf, ng: Vec3, w: Vec3) -> EmissionDensity {
+        let direction = side_pdf(ng, self.two_sided, w);
+        if self.is_delta() {
+            return EmissionDensity::at_point(direction);
+        }
+        EmissionDensity::continuous((position, direction))
+    }
+
     /// The texture coordinates of a sampled point, if anything depends on them.
     fn uv(&self, at: SamplePlace, time: f32) -> Vec2 {
-        let Radiance::Image(radiance) = &self.radiance else {
+        let Some(coordinates) = self.coordinates.as_deref() else {
             return Vec2::ZERO;
         };
-        let in_world = match (at, &radiance.coordinates) {
+        let in_world = match (at, coordinates) {
             (SamplePlace::Triangle(b), Coordinates::Corners([p, q, r])) => return *p * b.x + *q * b.y + *r * b.z,
             (SamplePlace::Triangle(_), Coordinates::Sphere(_)) | (SamplePlace::Parallelogram, _) => return Vec2::ZERO,
             (SamplePlace::Ellipsoid(outward), _) => return sphere_uv(outward),
             (SamplePlace::Sphere(outward), _) => outward,
         };
         let moving = self.motion.as_ref().and_then(|motion| motion.object_from_world(time));
-        let object_from_world = match (moving, radiance.coordinates) {
+        let object_from_world = match (moving, coordinates) {
             (Some(moving), _) => moving,
-            (None, Coordinates::Sphere(fixed)) => fixed,
+            (None, Coordinates::Sphere(fixed)) => *fixed,
             (None, Coordinates::Corners(_)) => DMat3::IDENTITY,
         };
         sphere_uv((object_from_world * in_world).normalize())
     }
 
-    /// Luminance on average over the surface.
-    fn luminance(&self) -> f32 {
-        match &self.radiance {
+    /// With its luminance on average over the surface.
+    fn measured(self) -> Self {
+        /// What it has at least of what it would have if it were as bright everywhere: the points may miss what there is.
+        const LEAST: f32 = 1e-3;
+        let whole = match &self.radiance {
             Radiance::Constant(radiance) => radiance.photometric_luminance(),
-            Radiance::Image(radiance) => radiance.mean * radiance.scale,
+            Radiance::Image(image, scale) => image.mean_luminance() * scale,
+        };
+        let Some(coordinates) = self.coordinates.as_deref() else {
+            return Self {
+                luminance: whole * self.alpha_at(Vec3::ZERO, Vec3::Z, Vec2::ZERO),
+                ..self
+            };
+        };
+        let steps = self.steps_for(coordinates);
+        let (mut sum, mut area) = (0.0_f64, 0.0_f64);
+        for i in 0..steps * steps {
+            let u = (Vec2::new((i % steps) as f32, (i / steps) as f32) + 0.5) / steps as f32;
+            let sample = self.emitter.sample_area(u);
+            let uv = self.uv(sample.at, 0.0);
+            let luminance = match &self.radiance {
+                Radiance::Constant(_) => whole,
+                Radiance::Image(image, scale) => image.luminance_bilinear(uv) * scale,
+            };
+            sum += f64::from(luminance * self.alpha_at(sample.p, sample.ng, uv) / sample.pdf.0);
+            area += f64::from(1.0 / sample.pdf.0);
+        }
+        Self {
+            luminance: ((sum / area) as f32).max(LEAST * whole),
+            ..self
         }
     }
 
+    /// Points along each side of the square that a mean over the surface wants: some for each pixel that it shows, within reason.
+    fn steps_for(&self, coordinates: &Coordinates) -> usize {
+        let size = match &self.radiance {
+            Radiance::Constant(_) => Vec2::ONE,
+            Radiance::Image(image, _) => Vec2::from(image.size().map(|side| side as f32)),
+        };
+        let shown = match coordinates {
+            Coordinates::Corners([p, q, r]) => (p.max(*q).max(*r) - p.min(*q).min(*r)) * size,
+            Coordinates::Sphere(_) => size,
+        };
+        (2.0 * shown.max_element()).clamp(32.0, 512.0) as usize
+    }
+
     pub(super) fn bounds(&self) -> LightBounds {
-        let (luminance, area) = (self.luminance(), self.area);
+        let (luminance, area) = (self.luminance, self.area);
         if let Some(motion) = &self.motion {
             return LightBounds::omnidirectional(motion.bounds(), luminance * area);
         }
@@ -237,7 +349,7 @@ impl AreaLight {
 
     /// At time 0 if it moves.
     pub(super) fn power(&self) -> f32 {
-        self.sides() * PI * self.area * self.luminance()
+        self.sides() * PI * self.area * self.luminance
     }
 }
 
@@ -247,29 +359,4 @@ fn sphere_uv(outward: DVec3) -> Vec2 {
     let turn = if turn < 0.0 { turn + 1.0 } else { turn };
     let height = 1.0 - outward.z.clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
     Vec2::new(turn as f32, height as f32)
-}
-
-/// The mean luminance over a surface, by some points for each pixel that it shows, within reason; more than nothing if anything in
-/// the image emits, as points may miss it.
-fn mean_luminance(image: &EmissionImage, coordinates: &Coordinates) -> f32 {
-    let [width, height] = image.size();
-    let whole = image.sum(|_, _| 1.0) / (width * height) as f32;
-    let size = Vec2::new(width as f32, height as f32);
-    let shown = match coordinates {
-        Coordinates::Corners([p, q, r]) => (p.max(*q).max(*r) - p.min(*q).min(*r)) * size,
-        Coordinates::Sphere(_) => size,
-    };
-    let steps = (2.0 * shown.max_element()).clamp(32.0, 512.0) as usize;
-    let mean = (0..steps * steps).map(|i| {
-        let u = (Vec2::new((i % steps) as f32, (i / steps) as f32) + 0.5) / steps as f32;
-        let uv = match coordinates {
-            Coordinates::Corners([p, q, r]) => {
-                let b = crate::sampling::warp::sample_uniform_triangle(u);
-                *p * b.x + *q * b.y + *r * b.z
-            }
-            Coordinates::Sphere(_) => sphere_uv(crate::sampling::warp::sample_uniform_sphere(u).as_dvec3()),
-        };
-        f64::from(image.luminance_bilinear(uv))
-    });
-    ((mean.sum::<f64>() / (steps * steps) as f64) as f32).max(1e-3 * whole)
 }

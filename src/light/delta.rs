@@ -2,8 +2,9 @@
 
 use std::f32::consts::PI;
 
-use super::{LightBounds, LightDensity, LightEnd, LightSample, Place};
-use crate::math::{Bounds3, Vec3};
+use super::{EmissionSample, LightBounds, LightDensity, LightEnd, LightSample, Place};
+use crate::math::{Bounds3, Vec2, Vec3};
+use crate::sampling::warp;
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
 /// The same intensity in all directions from a point.
@@ -49,6 +50,12 @@ impl PointLight {
         towards_point(p, self.place.at(time).position, |_| self.intensity.sample(lambda))
     }
 
+    pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
+        let (position, intensity) = (self.place.at(time).position, self.intensity.sample(lambda));
+        let w = warp::sample_uniform_sphere(u);
+        EmissionSample::from_point(position, w, intensity, warp::uniform_sphere_pdf())
+    }
+
     pub(super) fn bounds(&self) -> LightBounds {
         LightBounds::omnidirectional(self.place.bounds(), self.intensity.photometric_luminance())
     }
@@ -78,6 +85,17 @@ impl DistantLight {
             end: LightEnd::Infinity,
             density: LightDensity::Delta,
         }
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        time: f32,
+        u: Vec2,
+        lambda: &Wavelengths,
+        scene: &Bounds3,
+    ) -> Option<EmissionSample> {
+        let (w, irradiance) = (-self.place.at(time).axis(), self.irradiance.sample(lambda));
+        EmissionSample::from_disk(w, u, scene, irradiance, LightDensity::Delta)
     }
 
     pub(super) fn power(&self, bounds: &Bounds3) -> f32 {

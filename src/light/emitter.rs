@@ -39,13 +39,13 @@ pub enum EmitterShape {
     Ellipsoid(Arc<Sphere>),
 }
 
-/// A point of an emitter.
-pub(super) struct SurfaceSample {
+/// A point of an emitter, with its density: an [`AreaPdf`] or a [`SolidAnglePdf`].
+pub(super) struct SurfaceSample<M> {
     pub p: Vec3,
     /// See [`SurfaceInteraction::error`](crate::geometry::SurfaceInteraction::error).
     pub error: f32,
     pub ng: Vec3,
-    pub pdf: SolidAnglePdf,
+    pub pdf: M,
     /// What texture coordinates are found by.
     pub at: SamplePlace,
 }
@@ -90,80 +90,94 @@ impl Emitter {
     /// Density, by solid angle at `from`, of [`Self::sample`] for the point `p`, where the geometric normal is `ng`.
     #[inline]
     pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
-        match &self.shape {
-            EmitterShape::Triangle { .. } | EmitterShape::Parallelogram { .. } => self.uniform_pdf(from, p, ng),
-            EmitterShape::Sphere { center, radius, .. } => match Cone::towards(from, *center, *radius) {
-                Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
-                None => self.uniform_pdf(from, p, ng),
-            },
-            EmitterShape::Ellipsoid(sphere) => {
-                let outward = sphere.object_from_world().transform_point3(p.as_dvec3()).normalize();
-                area_to_solid_angle(ellipsoid_pdf(sphere, outward), from, p, ng)
-            }
+        match self.cone(from) {
+            Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
+            None => area_to_solid_angle(self.pdf_area(p), from, p, ng),
         }
     }
 
-    /// The density by solid angle of a point chosen uniformly by area.
+    /// Density of [`Self::sample_area`] for the point `p`.
     #[inline]
-    fn uniform_pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
-        area_to_solid_angle(self.uniform, from, p, ng)
+    pub fn pdf_area(&self, p: Vec3) -> AreaPdf {
+        match &self.shape {
+            EmitterShape::Ellipsoid(sphere) => {
+                let outward = sphere.object_from_world().transform_point3(p.as_dvec3()).normalize();
+                ellipsoid_pdf(sphere, outward)
+            }
+            _ => self.uniform,
+        }
     }
 
-    /// A point of the surface for `u` in [0, 1)².
+    /// The cone that a sphere fills, seen from outside; `None` for other shapes.
     #[inline]
-    pub fn sample(&self, from: Vec3, u: Vec2) -> SurfaceSample {
+    fn cone(&self, from: Vec3) -> Option<Cone> {
+        match &self.shape {
+            EmitterShape::Sphere { center, radius, .. } => Cone::towards(from, *center, *radius),
+            _ => None,
+        }
+    }
+
+    /// A point of the surface for `u` in [0, 1)²: uniformly over the cone that a sphere fills, seen from outside, else by
+    /// [`Self::sample_area`].
+    #[inline]
+    pub fn sample(&self, from: Vec3, u: Vec2) -> SurfaceSample<SolidAnglePdf> {
+        if let EmitterShape::Sphere { center, radius, inward } = &self.shape
+            && let Some(cone) = Cone::towards(from, *center, *radius)
+        {
+            let outward = cone.surface_direction(warp::sample_uniform_cone(u, cone.one_minus_cos), *radius);
+            let pdf = warp::uniform_cone_pdf(cone.one_minus_cos);
+            return sphere_point(*center, *radius, *inward, outward, pdf);
+        }
+        let SurfaceSample { p, error, ng, pdf, at } = self.sample_area(u);
+        let pdf = area_to_solid_angle(pdf, from, p, ng);
+        SurfaceSample { p, error, ng, pdf, at }
+    }
+
+    /// A point of the surface for `u` in [0, 1)², wherever it is seen from: uniform by area; of an ellipsoid the image of a uniform
+    /// point of the sphere.
+    #[inline]
+    pub fn sample_area(&self, u: Vec2) -> SurfaceSample<AreaPdf> {
+        let plane = |p: Vec3, ng: Vec3, at: SamplePlace| SurfaceSample {
+            p,
+            error: self.error,
+            ng,
+            pdf: self.uniform,
+            at,
+        };
         match &self.shape {
             EmitterShape::Triangle { vertices, ng } => {
                 let b = warp::sample_uniform_triangle(u);
                 let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
-                self.uniform_sample(p, *ng, from, SamplePlace::Triangle(b))
+                plane(p, *ng, SamplePlace::Triangle(b))
             }
             EmitterShape::Parallelogram { corner, edges, ng } => {
                 let p = *corner + edges[0] * u.x + edges[1] * u.y;
-                self.uniform_sample(p, *ng, from, SamplePlace::Parallelogram)
+                plane(p, *ng, SamplePlace::Parallelogram)
             }
-            EmitterShape::Sphere { center, radius, inward } => self.sample_sphere(*center, *radius, *inward, from, u),
-            EmitterShape::Ellipsoid(sphere) => sample_ellipsoid(sphere, from, u),
-        }
-    }
-
-    #[inline]
-    fn uniform_sample(&self, p: Vec3, ng: Vec3, from: Vec3, at: SamplePlace) -> SurfaceSample {
-        SurfaceSample {
-            p,
-            error: self.error,
-            ng,
-            pdf: self.uniform_pdf(from, p, ng),
-            at,
-        }
-    }
-
-    /// Uniformly over the cone that the sphere fills, seen from outside; uniformly over its area, seen from inside or from the
-    /// sphere itself.
-    fn sample_sphere(&self, center: DVec3, radius: f64, inward: bool, from: Vec3, u: Vec2) -> SurfaceSample {
-        let cone = Cone::towards(from, center, radius);
-        let outward = match &cone {
-            Some(cone) => cone.surface_direction(warp::sample_uniform_cone(u, cone.one_minus_cos), radius),
-            None => warp::sample_uniform_sphere(u).as_dvec3(),
-        };
-        let p = (center + outward * radius).as_vec3();
-        let ng = if inward { -outward } else { outward }.as_vec3();
-        let pdf = match &cone {
-            Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
-            None => self.uniform_pdf(from, p, ng),
-        };
-        SurfaceSample {
-            p,
-            error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
-            ng,
-            pdf,
-            at: SamplePlace::Sphere(outward),
+            EmitterShape::Sphere { center, radius, inward } => {
+                let outward = warp::sample_uniform_sphere(u).as_dvec3().normalize();
+                sphere_point(*center, *radius, *inward, outward, self.uniform)
+            }
+            EmitterShape::Ellipsoid(sphere) => sample_ellipsoid(sphere, u),
         }
     }
 }
 
+/// The point of a sphere in the unit direction `outward` from its centre.
+fn sphere_point<M>(center: DVec3, radius: f64, inward: bool, outward: DVec3, pdf: M) -> SurfaceSample<M> {
+    let p = (center + outward * radius).as_vec3();
+    let ng = if inward { -outward } else { outward }.as_vec3();
+    SurfaceSample {
+        p,
+        error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
+        ng,
+        pdf,
+        at: SamplePlace::Sphere(outward),
+    }
+}
+
 /// The image of a uniform point of the unit sphere.
-fn sample_ellipsoid(sphere: &Sphere, from: Vec3, u: Vec2) -> SurfaceSample {
+fn sample_ellipsoid(sphere: &Sphere, u: Vec2) -> SurfaceSample<AreaPdf> {
     let outward = warp::sample_uniform_sphere(u).as_dvec3().normalize();
     let world = sphere.world_from_object().transform_point3(outward * sphere.radius());
     let normal = (sphere.object_from_world().matrix3.transpose() * outward).normalize();
@@ -173,7 +187,7 @@ fn sample_ellipsoid(sphere: &Sphere, from: Vec3, u: Vec2) -> SurfaceSample {
         p,
         error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * (world - sphere.center()).length()) as f32,
         ng,
-        pdf: area_to_solid_angle(ellipsoid_pdf(sphere, outward), from, p, ng),
+        pdf: ellipsoid_pdf(sphere, outward),
         at: SamplePlace::Ellipsoid(outward),
     }
 }

@@ -3,9 +3,9 @@
 use std::f32::consts::PI;
 
 use super::delta::towards_point;
-use super::{LightBounds, LightSample, Place};
-use crate::math::Vec3;
-use crate::sampling::SphereMap;
+use super::{EmissionSample, LightBounds, LightSample, Place};
+use crate::math::{Vec2, Vec3};
+use crate::sampling::{CellDistribution, SolidAnglePdf, SphereMap};
 use crate::spectrum::{CompiledSpectrum, Wavelengths};
 
 /// An intensity times the pixels of an equal-area octahedral image, whose pole is +z of its place.
@@ -16,6 +16,8 @@ pub struct GoniometricLight {
     factors: Vec<f32>,
     side: usize,
     mean: f32,
+    /// Of pixels by their factors, which all have the same solid angle; `None` if all are 0.
+    distribution: Option<CellDistribution>,
 }
 
 impl GoniometricLight {
@@ -26,6 +28,7 @@ impl GoniometricLight {
             place,
             intensity,
             mean: mean(&factors),
+            distribution: CellDistribution::new(&factors, side),
             factors,
             side,
         })
@@ -42,6 +45,26 @@ impl GoniometricLight {
             let cell = SphereMap::EqualArea.cell(pose.local_direction(w), [self.side; 2]);
             self.intensity.sample(lambda) * self.factors[cell.y * self.side + cell.x]
         })
+    }
+
+    pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
+        let (cell, probability) = self.distribution.as_ref()?.sample(u);
+        let (pose, size) = (self.place.at(time), [self.side; 2]);
+        let w = pose.world_direction(SphereMap::EqualArea.direction(&cell, size));
+        let pdf = probability / SphereMap::EqualArea.solid_angle(cell.y, size) * pose.stretch(w);
+        let intensity = self.intensity.sample(lambda) * self.factors[cell.y * self.side + cell.x];
+        EmissionSample::from_point(pose.position, w, intensity, SolidAnglePdf(pdf))
+    }
+
+    /// Density of a direction of [`Self::sample_le`].
+    pub(super) fn pdf_le(&self, w: Vec3, time: f32) -> SolidAnglePdf {
+        let Some(distribution) = &self.distribution else {
+            return SolidAnglePdf(0.0);
+        };
+        let (pose, size) = (self.place.at(time), [self.side; 2]);
+        let cell = SphereMap::EqualArea.cell(pose.local_direction(w), size);
+        let pdf = distribution.probability(cell.x, cell.y) / SphereMap::EqualArea.solid_angle(cell.y, size);
+        SolidAnglePdf(pdf * pose.stretch(w))
     }
 
     pub(super) fn bounds(&self) -> LightBounds {

@@ -88,6 +88,12 @@ impl EmissionImage {
         ]
     }
 
+    /// The luminance on average over all pixels.
+    pub fn mean_luminance(&self) -> f32 {
+        let [width, height] = self.size;
+        self.sum(|_, _| 1.0) / (width * height) as f32
+    }
+
     /// The sum over all pixels of luminance times a weight, by column and row.
     pub fn sum(&self, weight: impl Fn(usize, usize) -> f32) -> f32 {
         let [width, height] = self.size;

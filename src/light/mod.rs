@@ -4,6 +4,7 @@ mod area;
 mod bounds;
 mod bvh;
 mod delta;
+mod emission;
 mod emitter;
 mod environment;
 mod goniometric;
@@ -19,6 +20,7 @@ mod spot;
 pub use area::{AreaLight, Coordinates};
 pub use bounds::LightBounds;
 pub use delta::{DistantLight, PointLight};
+pub use emission::{EmissionDensity, EmissionOrigin, EmissionSample};
 pub use emitter::EmitterShape;
 pub use environment::EnvironmentLight;
 pub use goniometric::GoniometricLight;
@@ -83,11 +85,11 @@ pub enum LightEnd {
     Infinity,
 }
 
-/// How likely a sampled point of a light was.
+/// How likely a sampled point of a light, or a direction that light leaves it in, was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightDensity {
+pub enum LightDensity<M = SolidAnglePdf> {
     /// A BSDF sample could have found it as well.
-    Continuous(SolidAnglePdf),
+    Continuous(M),
     /// Only a light sample can find it.
     Delta,
 }

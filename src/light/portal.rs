@@ -6,9 +6,11 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
+use super::emission::outside;
 use super::image::EmissionImage;
-use crate::math::{Frame, Vec2, Vec3};
-use crate::sampling::{SolidAnglePdf, WindowedDistribution};
+use super::{EmissionDensity, EmissionOrigin, EmissionSample};
+use crate::math::{Bounds3, Frame, Vec2, Vec3};
+use crate::sampling::{AreaPdf, CellDistribution, SolidAnglePdf, WindowedDistribution};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 
 /// A rectangle that light comes through.
@@ -61,6 +63,13 @@ impl Portal {
         (self.frame.to_world(w), solid_angle(w))
     }
 
+    /// The point of the rectangle at `u` along its edges.
+    fn at(&self, u: Vec2) -> Vec3 {
+        let diagonal = self.opposite - self.corner;
+        let (s, t) = (self.frame.s, self.frame.t);
+        self.corner + s * (diagonal.dot(s) * u.x) + t * (diagonal.dot(t) * u.y)
+    }
+
     /// What of the rectified image is seen from `p` through the portal.
     fn window(&self, p: Vec3) -> Option<[Vec2; 2]> {
         let a = self.point((self.corner - p).try_normalize()?)?;
@@ -94,6 +103,8 @@ pub struct PortalEnvironment {
     size: [usize; 2],
     /// `None` if all is black.
     distribution: Option<WindowedDistribution>,
+    /// Of what goes through any point of the portal: with the cosine there.
+    emission: Option<CellDistribution>,
     power: f32,
 }
 
@@ -112,18 +123,20 @@ impl PortalEnvironment {
             Behind::Image(image) => image.luminance(x, y),
         };
         let mut values = Vec::with_capacity(size[0] * size[1]);
-        let mut power = 0.0_f64;
+        let mut powers = Vec::with_capacity(size[0] * size[1]);
         for y in 0..size[1] {
             for x in 0..size[0] {
                 let angles = center(x, y, size) * PI - FRAC_PI_2;
                 let w = Vec3::new(angles.x.tan(), angles.y.tan(), 1.0).normalize();
                 let value = luminance(x, y) * solid_angle(w);
                 values.push(value);
-                power += f64::from(luminance(x, y)) * projected_solid_angle([x, y], size);
+                powers.push((f64::from(luminance(x, y)) * projected_solid_angle([x, y], size)) as f32);
             }
         }
+        let power: f64 = powers.iter().map(|&power| f64::from(power)).sum();
         Self {
             power: power as f32 * portal.area,
+            emission: CellDistribution::new(&powers, size[0]),
             distribution: WindowedDistribution::new(values, size[0]),
             portal,
             behind,
@@ -140,19 +153,15 @@ impl PortalEnvironment {
         match &self.behind {
             Behind::Constant(radiance) => radiance.sample(lambda),
             Behind::Image(image) => {
-                let [x, y] = [0, 1].map(|i| ((point[i] * self.size[i] as f32) as usize).min(self.size[i] - 1));
+                let [x, y] = self.cell(point);
                 image.sample(x, y, lambda)
             }
         }
     }
 
     pub(super) fn le(&self, p: Vec3, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
-        let seen = || {
-            let (point, window) = (self.portal.point(w)?, self.portal.window(p)?);
-            let inside = point.cmpge(window[0]).all() && point.cmple(window[1]).all();
-            inside.then(|| self.radiance(point, lambda))
-        };
-        seen().unwrap_or(SampledSpectrum::ZERO)
+        let point = self.seen(p, w);
+        point.map_or(SampledSpectrum::ZERO, |point| self.radiance(point, lambda))
     }
 
     pub(super) fn pdf_li(&self, p: Vec3, w: Vec3) -> SolidAnglePdf {
@@ -176,6 +185,67 @@ impl PortalEnvironment {
         let (point, pdf) = self.distribution.as_ref()?.sample(u, window)?;
         let (w, solid_angle) = self.portal.direction(point);
         (solid_angle > 0.0).then(|| (w, SolidAnglePdf(pdf / solid_angle), self.radiance(point, lambda)))
+    }
+
+    /// A ray through a point of the portal, uniform by area: by area across the direction that is more, the flatter it passes.
+    pub(super) fn sample_le(
+        &self,
+        u_position: Vec2,
+        u_direction: Vec2,
+        lambda: &Wavelengths,
+        scene: &Bounds3,
+    ) -> Option<EmissionSample> {
+        let (cell, _) = self.emission.as_ref()?.sample(u_direction);
+        let point = (Vec2::new(cell.x as f32, cell.y as f32) + cell.offset) / self.in_cells();
+        let (to_sky, _) = self.portal.direction(point);
+        let through = self.portal.at(u_position);
+        let sample = EmissionSample {
+            le: self.radiance(point, lambda),
+            origin: EmissionOrigin::Infinity(outside(through, -to_sky, scene)),
+            direction: -to_sky,
+            density: EmissionDensity::continuous(self.pdf_through(point, to_sky)),
+            cos_theta: 1.0,
+        };
+        sample.checked()
+    }
+
+    /// Densities of the ray of [`Self::sample_le`] that comes to `p` from the direction `w`; 0 beside the portal.
+    pub(super) fn pdf_le(&self, p: Vec3, w: Vec3) -> (AreaPdf, SolidAnglePdf) {
+        match self.seen(p, w) {
+            Some(point) => self.pdf_through(point, w),
+            None => (AreaPdf(0.0), SolidAnglePdf(0.0)),
+        }
+    }
+
+    /// Densities of a ray through the portal from the direction `w`, a point of the rectified image.
+    fn pdf_through(&self, point: Vec2, w: Vec3) -> (AreaPdf, SolidAnglePdf) {
+        let local = self.portal.frame.to_local(w);
+        let solid_angle = solid_angle(local);
+        let Some(distribution) = self.emission.as_ref().filter(|_| solid_angle > 0.0) else {
+            return (AreaPdf(0.0), SolidAnglePdf(0.0));
+        };
+        let [x, y] = self.cell(point);
+        let cells = (self.size[0] * self.size[1]) as f32;
+        (
+            AreaPdf(1.0 / (self.portal.area * local.z)),
+            SolidAnglePdf(distribution.probability(x, y) * cells / solid_angle),
+        )
+    }
+
+    fn in_cells(&self) -> Vec2 {
+        Vec2::new(self.size[0] as f32, self.size[1] as f32)
+    }
+
+    /// The cell of a point of the rectified image.
+    fn cell(&self, point: Vec2) -> [usize; 2] {
+        [0, 1].map(|i| ((point[i] * self.size[i] as f32) as usize).min(self.size[i] - 1))
+    }
+
+    /// The point of the rectified image in the direction `w`, if it is seen from `p` through the portal.
+    fn seen(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
+        let (point, window) = (self.portal.point(w)?, self.portal.window(p)?);
+        let inside = point.cmpge(window[0]).all() && point.cmple(window[1]).all();
+        inside.then_some(point)
     }
 
     pub(super) fn power(&self) -> f32 {

@@ -2,8 +2,9 @@
 
 use super::delta::towards_point;
 use super::image::EmissionImage;
-use super::{LightBounds, LightSample, Place};
+use super::{EmissionSample, LightBounds, LightSample, Place};
 use crate::math::{Vec2, Vec3};
+use crate::sampling::{Cell, CellDistribution, SolidAnglePdf};
 use crate::spectrum::{SampledSpectrum, Wavelengths};
 
 /// Pixels are intensities; the picture is on a screen before +z of its place, its upper edge towards +y, its right one towards +x.
@@ -12,6 +13,8 @@ pub struct ProjectionLight {
     place: Place,
     screen: Screen,
     image: Box<EmissionImage>,
+    /// Of pixels by their power; `None` if all are black.
+    distribution: Option<CellDistribution>,
 }
 
 /// The picture at distance 1.
@@ -48,6 +51,23 @@ impl Screen {
         inside.then(|| [0, 1].map(|i| ((unit[i] * self.size[i] as f32) as usize).min(self.size[i] - 1)))
     }
 
+    /// The direction of a point of a pixel.
+    fn direction(&self, cell: &Cell) -> Vec3 {
+        let unit = (Vec2::new(cell.x as f32, cell.y as f32) + cell.offset) / self.in_pixels();
+        let at = (2.0 * unit - 1.0) * self.half;
+        Vec3::new(at.x, -at.y, 1.0).normalize()
+    }
+
+    /// The density, at the direction `w` before the screen, of a point uniform over a pixel's area: dω = cos³θ dA at distance 1.
+    fn pixel_pdf(&self, w: Vec3) -> f32 {
+        let pixel = 2.0 * self.half / self.in_pixels();
+        1.0 / (pixel.x * pixel.y * w.z * w.z * w.z)
+    }
+
+    fn in_pixels(&self) -> Vec2 {
+        Vec2::new(self.size[0] as f32, self.size[1] as f32)
+    }
+
     /// The solid angle of a pixel.
     fn solid_angle(&self, x: usize, y: usize) -> f32 {
         let edge = |axis: usize, i: usize| {
@@ -64,9 +84,17 @@ impl Screen {
 impl ProjectionLight {
     /// With the intensities of `image` (W·sr⁻¹·nm⁻¹); `fov`, in radians, is the angle of its shorter side.
     pub fn new(place: Place, image: EmissionImage, fov: f32) -> Self {
+        let size = image.size();
+        let screen = Screen::new(size, fov);
+        let power = |i: usize| {
+            let (x, y) = (i % size[0], i / size[0]);
+            image.luminance(x, y) * screen.solid_angle(x, y)
+        };
+        let powers: Vec<f32> = (0..size[0] * size[1]).map(power).collect();
         Self {
             place,
-            screen: Screen::new(image.size(), fov),
+            screen,
+            distribution: CellDistribution::new(&powers, size[0]),
             image: Box::new(image),
         }
     }
@@ -86,10 +114,30 @@ impl ProjectionLight {
         })
     }
 
+    pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
+        let (cell, probability) = self.distribution.as_ref()?.sample(u);
+        let pose = self.place.at(time);
+        let local = self.screen.direction(&cell);
+        let w = pose.world_direction(local);
+        let pdf = probability * self.screen.pixel_pdf(local) * pose.stretch(w);
+        let intensity = self.image.sample(cell.x, cell.y, lambda);
+        EmissionSample::from_point(pose.position, w, intensity, SolidAnglePdf(pdf))
+    }
+
+    /// Density of a direction of [`Self::sample_le`].
+    pub(super) fn pdf_le(&self, w: Vec3, time: f32) -> SolidAnglePdf {
+        let pose = self.place.at(time);
+        let local = pose.local_direction(w);
+        SolidAnglePdf(match (&self.distribution, self.screen.pixel(local)) {
+            (Some(distribution), Some([x, y])) => {
+                distribution.probability(x, y) * self.screen.pixel_pdf(local) * pose.stretch(w)
+            }
+            _ => 0.0,
+        })
+    }
+
     pub(super) fn bounds(&self) -> LightBounds {
-        let [width, height] = self.image.size();
-        let intensity = self.image.sum(|_, _| 1.0) / (width * height) as f32;
-        let all_around = LightBounds::omnidirectional(self.place.bounds(), intensity);
+        let all_around = LightBounds::omnidirectional(self.place.bounds(), self.image.mean_luminance());
         if !self.place.is_static() {
             return all_around;
         }

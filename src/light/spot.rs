@@ -3,8 +3,9 @@
 use std::f32::consts::TAU;
 
 use super::delta::towards_point;
-use super::{LightBounds, LightSample, Place};
-use crate::math::Vec3;
+use super::{EmissionSample, LightBounds, LightSample, Place};
+use crate::math::{Vec2, Vec3};
+use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{CompiledSpectrum, Wavelengths};
 
 /// Full intensity up to an angle from +z of its place, then a smooth step down to nothing at another.
@@ -40,14 +41,51 @@ impl SpotLight {
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let w = pose.local_direction(w);
-            let rise = if w.z > 0.0 {
-                (w.x * w.x + w.y * w.y) / (1.0 + w.z)
-            } else {
-                1.0 - w.z
-            };
-            self.intensity.sample(lambda) * (1.0 - smooth_step(rise, self.rise_start, self.rise_end))
+            self.intensity.sample(lambda) * self.profile(pose.local_direction(w))
         })
+    }
+
+    /// The share of the full intensity that there is in the local direction `w`.
+    fn profile(&self, w: Vec3) -> f32 {
+        let rise = if w.z > 0.0 {
+            (w.x * w.x + w.y * w.y) / (1.0 + w.z)
+        } else {
+            1.0 - w.z
+        };
+        1.0 - smooth_step(rise, self.rise_start, self.rise_end)
+    }
+
+    /// By intensity.
+    pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
+        let pose = self.place.at(time);
+        let one_minus_cos = self.sample_profile(u.x);
+        let sin = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+        let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
+        let w = pose.world_direction(Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - one_minus_cos));
+        let factor = self.profile(pose.local_direction(w));
+        EmissionSample::from_point(
+            pose.position,
+            w,
+            self.intensity.sample(lambda) * factor,
+            self.pdf_le(w, time),
+        )
+    }
+
+    /// Density of a direction of [`Self::sample_le`].
+    pub(super) fn pdf_le(&self, w: Vec3, time: f32) -> SolidAnglePdf {
+        let pose = self.place.at(time);
+        let factor = self.profile(pose.local_direction(w));
+        SolidAnglePdf(factor / cone_power(self.rise_start, self.rise_end) * pose.stretch(w))
+    }
+
+    /// 1 - cos of an angle from +z with a density, by that, in proportion to the intensity.
+    fn sample_profile(&self, u: f32) -> f32 {
+        let (full, step) = (self.rise_start, self.rise_end - self.rise_start);
+        let at = u * (full + 0.5 * step);
+        if at < full {
+            return at;
+        }
+        full + step * (1.0 - invert_smooth_step(1.0 - (at - full) / (0.5 * step)))
     }
 
     pub(super) fn bounds(&self) -> LightBounds {
@@ -86,4 +124,31 @@ fn smooth_step(x: f32, low: f32, high: f32) -> f32 {
     }
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
+}
+
+/// Where the smooth step's integral from 0, t³ - t⁴ / 2, is `u` times that to 1.
+fn invert_smooth_step(u: f32) -> f32 {
+    // Newton's method for t³ (2 - t) = u, which is convex: from above it comes down to the root.
+    let mut t = u.clamp(0.0, 1.0).cbrt();
+    for _ in 0..5 {
+        let slope = 2.0 * t * t * (3.0 - 2.0 * t);
+        if slope > 0.0 {
+            t -= (t * t * t * (2.0 - t) - u) / slope;
+        }
+    }
+    t.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smooth_step_is_inverted() {
+        for i in 0..=1000 {
+            let u = i as f32 / 1000.0;
+            let t = invert_smooth_step(u);
+            assert!((t * t * t * (2.0 - t) - u).abs() < 1e-6, "{u}: {t}");
+        }
+    }
 }

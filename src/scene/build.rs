@@ -13,7 +13,7 @@ use crate::accel;
 use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
-use crate::light::{Light, LightId, LightSampler};
+use crate::light::{LightId, LightSampler};
 use crate::math::AnimatedTransform;
 use crate::texture::FloatTexture;
 
@@ -58,6 +58,7 @@ impl Scene {
         let start = Instant::now();
         let accel = accel::build(options.backend, &world, &options.build)?;
         let build_seconds = start.elapsed().as_secs_f64();
+        let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
         let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
             LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
@@ -74,6 +75,7 @@ impl Scene {
             lights: builder.lights.lights,
             environments: builder.lights.environments,
             light_sampler,
+            emission_sampler,
             build_seconds,
         })
     }
@@ -131,20 +133,17 @@ impl SceneBuilder<'_> {
                 return None;
             }
         };
+        let alpha = self.textures.float(&shape.alpha);
         let lights = match &shape.area_light {
             None => Vec::new(),
-            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.as_ref()),
+            Some(area_light) => self.add_area_lights(area_light, &placed.geometry, placed.motion.as_ref(), &alpha),
         };
-        let alpha = self.textures.float(&shape.alpha);
         let alpha = match alpha {
             FloatTexture::Constant(alpha) if alpha >= 1.0 => None,
             alpha => Some(alpha),
         };
         if alpha.is_some() {
             placed.geometry.opacity = Opacity::Filtered;
-        }
-        if let (Some(alpha), true) = (&alpha, shape.area_light.is_some()) {
-            self.see_through(shape.span, alpha, &lights);
         }
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
@@ -163,27 +162,16 @@ impl SceneBuilder<'_> {
         Some((id, instance))
     }
 
-    /// Makes lights send what their shape's alpha leaves of it.
-    fn see_through(&mut self, span: Span, alpha: &FloatTexture, lights: &[Option<LightId>]) {
-        let FloatTexture::Constant(alpha) = *alpha else {
-            let message = "an area light on a shape whose `alpha` is a texture is not supported yet";
-            return self.problem(span, message);
-        };
-        for light in lights.iter().flatten() {
-            if let Light::Area(light) = &mut self.lights.lights[light.index()] {
-                light.see_through(alpha);
-            }
-        }
-    }
-
     /// One light for each primitive that has an area.
     fn add_area_lights(
         &mut self,
         desc: &AreaLightDesc,
         geometry: &Geometry,
         motion: Option<&AnimatedTransform>,
+        alpha: &FloatTexture,
     ) -> Vec<Option<LightId>> {
-        self.lights.add_area(desc, geometry, motion).unwrap_or_else(|message| {
+        let lights = self.lights.add_area(desc, geometry, motion, alpha);
+        lights.unwrap_or_else(|message| {
             self.problem(desc.span, message);
             Vec::new()
         })

@@ -16,6 +16,7 @@ use crate::light::{
 use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use crate::sampling::{Cell, SphereMap};
 use crate::spectrum::{ColorMode, ColorSpace, CompiledSpectrum, RgbEmission};
+use crate::texture::FloatTexture;
 
 /// The lights so far.
 pub(super) struct LightBuilder {
@@ -182,13 +183,14 @@ impl LightBuilder {
     }
 
     /// Adds the lights that a shape's primitives are, those that have an area: one for each, or for two triangles that are the halves
-    /// of a parallelogram. `motion` moves the shape. The error is a message for the
-    /// light's place in the file.
+    /// of a parallelogram. `motion` moves the shape, rays pass it as its `alpha` says. The error is a message
+    /// for the light's place in the file.
     pub fn add_area(
         &mut self,
         desc: &AreaLightDesc,
         geometry: &Geometry,
         motion: Option<&AnimatedTransform>,
+        alpha: &FloatTexture,
     ) -> Result<Vec<Option<LightId>>, String> {
         let image = desc
             .image
@@ -196,10 +198,7 @@ impl LightBuilder {
             .map(|image| self.image(&Pixels::of(image)?).map(Arc::new))
             .transpose()?;
         // What pbrt-v4 scales a power by: the mean of the image, whatever part of it the shape shows.
-        let mean = image.as_ref().map_or(1.0, |image| {
-            let [width, height] = image.size();
-            image.sum(|_, _| 1.0) / (width * height) as f32
-        });
+        let mean = image.as_ref().map_or(1.0, |image| image.mean_luminance());
         if desc.power.is_some() && mean <= 0.0 {
             return Err("the light is black: it has no luminance to be scaled".to_owned());
         }
@@ -211,6 +210,11 @@ impl LightBuilder {
                 Some(image) => light.with_image(Arc::clone(image), coordinates),
                 None => light,
             };
+            let light = match alpha {
+                FloatTexture::Constant(alpha) if *alpha >= 1.0 => light,
+                FloatTexture::Constant(alpha) => light.with_alpha(*alpha),
+                texture => light.with_alpha_texture(texture.clone(), coordinates),
+            };
             // As in pbrt-v4 the power is that of each light: of one triangle.
             let power = desc
                 .power
@@ -220,13 +224,14 @@ impl LightBuilder {
         let mut lights = Vec::with_capacity(geometry.primitive_count());
         while lights.len() < geometry.primitive_count() {
             let first = lights.len();
-            match parallelogram(geometry, first).filter(|_| joins) {
-                Some(shape) => {
+            match (parallelogram(geometry, first), alpha) {
+                (Some(shape), FloatTexture::Constant(alpha)) if joins => {
                     let light = AreaLight::new(shape, radiance.clone(), desc.two_sided);
-                    let light = light.map(|light| self.push(Light::Area(light.scaled(desc.scale))));
-                    lights.extend([light; 2]);
+                    let light = light.map(|light| light.with_alpha(*alpha).scaled(desc.scale));
+                    let id = light.map(|light| self.push(Light::Area(light)));
+                    lights.extend([id; 2]);
                 }
-                None => lights.push(add(self, first)),
+                _ => lights.push(add(self, first)),
             }
         }
         Ok(lights)

@@ -48,6 +48,8 @@ pub struct Scene {
     /// Those that a ray meets when it leaves the scene.
     environments: Vec<LightId>,
     light_sampler: LightSampler,
+    /// By power.
+    emission_sampler: LightSampler,
     /// Seconds that the backend took to build.
     build_seconds: f64,
 }
@@ -133,6 +135,12 @@ impl Scene {
     #[inline]
     pub fn light_sampler(&self) -> &LightSampler {
         &self.light_sampler
+    }
+
+    /// Chooses lights that paths start from: by power, whatever point is asked for.
+    #[inline]
+    pub fn emission_sampler(&self) -> &LightSampler {
+        &self.emission_sampler
     }
 
     /// Seconds that the backend took to build.

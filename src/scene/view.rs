@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use super::shapes::animated;
-use crate::camera::{Camera, CameraSpec, Projection};
+use crate::camera::{Camera, CameraSpec, Projection, RasterDomain};
 use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
@@ -97,6 +97,11 @@ impl View {
     /// as in pbrt-v4. It is that of all samples that are planned, whichever of them are rendered.
     pub fn detail_scale(&self) -> f32 {
         (1.0 / (self.sampler.samples_per_pixel() as f32).sqrt()).max(0.125)
+    }
+
+    /// The film positions that its pixels see; light paths reach the camera there.
+    pub fn domain(&self) -> RasterDomain {
+        RasterDomain::new(self.resolution, self.filter.radius())
     }
 
     /// An empty film for it.

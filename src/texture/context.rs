@@ -32,15 +32,7 @@ const LARGEST_CHANGE: f32 = 1e8;
 impl TextureContext {
     /// Where a ray's cone meets a surface: an ellipse, drawn out along the ray.
     pub fn new(si: &SurfaceInteraction) -> Self {
-        let mut context = Self {
-            p: si.p,
-            dpdx: Vec3::ZERO,
-            dpdy: Vec3::ZERO,
-            n: si.ng,
-            uv: si.uv,
-            duvdx: Vec2::ZERO,
-            duvdy: Vec2::ZERO,
-        };
+        let mut context = Self::at_point(si.p, si.ng, si.uv);
         if si.footprint > 0.0 {
             let cos = si.ng.dot(si.wo);
             let across = (si.wo - si.ng * cos).try_normalize();
@@ -50,6 +42,19 @@ impl TextureContext {
             [context.duvdx, context.duvdy] = uv_changes(si.dpdu, si.dpdv, context.dpdx, context.dpdy);
         }
         context
+    }
+
+    /// A point of no extent, where the unit geometric normal is `n` and the texture coordinates are `uv`: asks for the finest detail.
+    pub fn at_point(p: Vec3, n: Vec3, uv: Vec2) -> Self {
+        Self {
+            p,
+            dpdx: Vec3::ZERO,
+            dpdy: Vec3::ZERO,
+            n,
+            uv,
+            duvdx: Vec2::ZERO,
+            duvdy: Vec2::ZERO,
+        }
     }
 
     /// The context a little beside the point, by `dp` in space and by `duv` in texture coordinates.

@@ -58,7 +58,7 @@ impl Built {
 
     /// The picture of a view by an integrator, and what was done for it.
     pub fn picture_with(&self, view: &View, integrator: Integrator) -> (Vec<f32>, RenderStats) {
-        let film = view.film();
+        let film = integrator.film(view);
         let stats = integrator.render(&self.scene, view, &film, &Silent);
         (film.develop(), stats)
     }

@@ -4,11 +4,13 @@
 mod common;
 
 mod bsdfs;
+mod camera_importance;
 mod cameras;
 mod energy;
 mod environments;
 mod furnace;
 mod kinds;
+mod light_emission;
 mod light_samplers;
 mod lights;
 mod measured;

@@ -1,11 +1,11 @@
-//! `path`, in all its ways, against the oracle: every pair of materials, lights, ways, backends, colour modes, samplers, light
-//! samplers, lenses and motions; in the full tier every three of them.
+//! `path` and `bdpt`, in all their ways, against the oracle: every pair of materials, lights, ways, backends, colour modes, samplers,
+//! light samplers, lenses and motions; in the full tier every three of them.
 
 use std::collections::BTreeMap;
 
 use lucerna::accel::Backend;
 use lucerna::desc::{Distribution, Heuristic, Strategy, Termination};
-use lucerna::integrator::{Integrator, KajiyaIntegrator, PathIntegrator};
+use lucerna::integrator::{Integrator, KajiyaIntegrator};
 use lucerna::scene::ViewOverrides;
 use lucerna::spectrum::ColorMode;
 
@@ -27,10 +27,15 @@ const ORACLE: KajiyaIntegrator = KajiyaIntegrator {
 const GROUP: usize = 3;
 /// Pixels that a ball and its surroundings have.
 const SQUARE: [usize; 2] = [8, 8];
-const WAYS: [&str; 6] = ["mis", "balance", "split", "bsdf", "split bsdf", "light"];
+/// Ways of `path`.
+const PATH_WAYS: &[&str] = &["mis", "balance", "split", "bsdf", "split bsdf", "light"];
+/// Ways of `bdpt`.
+const BDPT_WAYS: &[&str] = &["bdpt power", "bdpt balance"];
 const SAMPLERS: [&str; 5] = ["zsobol", "sobol", "halton", "stratified", "independent"];
 const LIGHT_SAMPLERS: [&str; 3] = ["bvh", "power", "uniform"];
 const LENSES: [&str; 2] = ["", r#""float lensradius" 0.15 "float focaldistance" 4.5"#];
+/// Surfaces that scatter by delta lobes.
+const SMOOTH: [&str; 5] = ["glass", "mirror", "thin glass", "smooth coat", "glass that disperses"];
 /// Where things are when the shutter closes.
 const MOTIONS: [&str; 2] = [
     "",
@@ -48,32 +53,50 @@ const SAMPLER: usize = 6;
 const LIGHT_SAMPLER: usize = 7;
 const BACKEND: usize = 8;
 
-const LEVELS: [usize; 9] = [
-    SURFACES.len() / GROUP,
-    LAMPS.len(),
-    MODES.len(),
-    LENSES.len(),
-    MOTIONS.len(),
-    WAYS.len(),
-    SAMPLERS.len(),
-    LIGHT_SAMPLERS.len(),
-    Backend::AVAILABLE.len(),
-];
-
-/// Lights that directions do not meet are not looked for by directions alone.
-fn allowed(row: &[Option<usize>]) -> bool {
-    !(row[WAY].is_some_and(|way| WAYS[way].contains("bsdf")) && row[LAMP].is_some_and(|lamp| LAMPS[lamp].is_delta))
+fn levels(ways: &[&str]) -> [usize; 9] {
+    [
+        SURFACES.len() / GROUP,
+        LAMPS.len(),
+        MODES.len(),
+        LENSES.len(),
+        MOTIONS.len(),
+        ways.len(),
+        SAMPLERS.len(),
+        LIGHT_SAMPLERS.len(),
+        Backend::AVAILABLE.len(),
+    ]
 }
 
-fn covering(strength: usize) -> Covering<'static> {
-    Covering {
-        levels: &LEVELS,
+/// The rows in which all combinations of `strength` levels occur.
+fn rows(ways: &[&str], strength: usize) -> Vec<Vec<usize>> {
+    // Lights that directions do not meet are not looked for by directions alone; what a mirror throws of them onto other surfaces only
+    // light subpaths find, not the oracle.
+    let allowed = |row: &[Option<usize>]| {
+        let finds_by_directions = row[WAY].is_some_and(|way| ways[way].contains("bsdf"));
+        let finds_caustics = ways == BDPT_WAYS
+            && row[SURFACE].is_some_and(|group| {
+                SURFACES[GROUP * group..][..GROUP]
+                    .iter()
+                    .any(|s| SMOOTH.contains(&s.name))
+            });
+        !((finds_by_directions || finds_caustics) && row[LAMP].is_some_and(|lamp| LAMPS[lamp].is_delta))
+    };
+    let covering = Covering {
+        levels: &levels(ways),
         strength,
         allowed: &allowed,
-    }
+    };
+    let rows = covering.rows();
+    println!(
+        "{} rows; at least {} if none were excluded",
+        rows.len(),
+        covering.fewest()
+    );
+    assert!(covering.missing(&rows).is_empty());
+    rows
 }
 
-fn describe(row: &[usize]) -> String {
+fn describe(row: &[usize], ways: &[&str]) -> String {
     let surfaces = &SURFACES[GROUP * row[SURFACE]..][..GROUP];
     let names: Vec<&str> = surfaces.iter().map(|surface| surface.name).collect();
     format!(
@@ -83,7 +106,7 @@ fn describe(row: &[usize]) -> String {
         MODES[row[COLOR]],
         ["pinhole", "lens"][row[LENS]],
         ["still", "moving"][row[MOTION]],
-        WAYS[row[WAY]],
+        ways[row[WAY]],
         SAMPLERS[row[SAMPLER]],
         LIGHT_SAMPLERS[row[LIGHT_SAMPLER]],
         Backend::AVAILABLE[row[BACKEND]],
@@ -131,12 +154,20 @@ fn build(row: &[usize]) -> Built {
     Built::new(parse(&scene(row)), Backend::AVAILABLE[row[BACKEND]], MODES[row[COLOR]])
 }
 
-/// The path tracer of a row.
-fn path(row: &[usize], built: &Built) -> PathIntegrator {
-    let Integrator::Path(mut path) = Integrator::from_desc(&built.desc.integrator) else {
+/// The integrator of a way, for scenes of the path tracer.
+fn integrator(way: &str, built: &Built) -> Integrator {
+    let of_scene = Integrator::from_desc(&built.desc.integrator);
+    let Integrator::Path(mut path) = of_scene else {
         panic!("not a path tracer");
     };
-    match WAYS[row[WAY]] {
+    if let Integrator::Bdpt(mut bdpt) = of_scene.named(way.split(' ').next().unwrap_or(way)) {
+        bdpt.heuristic = match way {
+            "bdpt balance" => Heuristic::Balance,
+            _ => Heuristic::Power,
+        };
+        return Integrator::Bdpt(bdpt);
+    }
+    match way {
         "balance" => path.heuristic = Heuristic::Balance,
         "split" => path.splitting = 3,
         "bsdf" => path.strategy = Strategy::Bsdf,
@@ -147,7 +178,7 @@ fn path(row: &[usize], built: &Built) -> PathIntegrator {
         "light" => path.strategy = Strategy::Light,
         _ => {}
     }
-    path
+    Integrator::Path(path)
 }
 
 /// The power that each comparison has: what error of one channel of one ball, and of the whole, it notices.
@@ -224,13 +255,13 @@ impl Pictures {
     }
 }
 
-/// Compares `path` with the oracle, both with as many samples as the power needs. When to stop is decided by variances alone.
-fn compare(means: Means, path: &mut Pictures, oracle: &mut Pictures) -> MeansReport {
+/// Compares an integrator with the oracle, both with as many samples as the power needs. When to stop is decided by variances alone.
+fn compare(means: Means, ours: &mut Pictures, oracle: &mut Pictures) -> MeansReport {
     loop {
-        let report = means.against_runs(&path.runs, &oracle.runs);
+        let report = means.against_runs(&ours.runs, &oracle.runs);
         let is_enough = report.detectable.0 <= power().0 && report.detectable.1 <= power().1;
-        let noisier = if path.noise() > oracle.noise() {
-            &mut *path
+        let noisier = if ours.noise() > oracle.noise() {
+            &mut *ours
         } else {
             &mut *oracle
         };
@@ -243,18 +274,22 @@ fn compare(means: Means, path: &mut Pictures, oracle: &mut Pictures) -> MeansRep
 
 #[test]
 fn three_way_rows_cover() {
-    let covering = covering(3);
-    let rows = covering.rows();
-    println!("{} rows, at least {} are needed", rows.len(), covering.fewest());
-    assert!(covering.missing(&rows).is_empty());
+    rows(PATH_WAYS, 3);
+    rows(BDPT_WAYS, 3);
 }
 
 #[test]
-fn every_pair_or_three_agree_with_the_oracle() {
-    let covering = covering(if full_tier() { 3 } else { 2 });
-    let rows = covering.rows();
-    assert!(covering.missing(&rows).is_empty());
-    println!("{} rows, at least {} are needed", rows.len(), covering.fewest());
+fn every_pair_or_three_of_path_agree_with_the_oracle() {
+    compare_rows(PATH_WAYS);
+}
+
+#[test]
+fn every_pair_or_three_of_bdpt_agree_with_the_oracle() {
+    compare_rows(BDPT_WAYS);
+}
+
+fn compare_rows(ways: &[&str]) {
+    let rows = rows(ways, if full_tier() { 3 } else { 2 });
     let means = Means {
         significance: sidak(0.01, rows.len()),
         ..Means::default()
@@ -268,9 +303,9 @@ fn every_pair_or_three_agree_with_the_oracle() {
     for (_, rows) in scenes.values().enumerate().filter(|(i, _)| in_shard(*i)) {
         let mut oracle = Pictures::new(rows[0], |_| Integrator::Kajiya(ORACLE), 1_000_001);
         for row in rows {
-            let mut path = Pictures::new(row, |built| Integrator::Path(path(row, built)), 1);
-            let report = compare(means, &mut path, &mut oracle);
-            let name = format!("{} ({} and {} samples)", describe(row), path.spp, oracle.spp);
+            let mut ours = Pictures::new(row, |built| integrator(ways[row[WAY]], built), 1);
+            let report = compare(means, &mut ours, &mut oracle);
+            let name = format!("{} ({} and {} samples)", describe(row, ways), ours.spp, oracle.spp);
             println!("{name}: {report}");
             report.assert_power(&name, power().0, power().1);
             if !report.agrees() {

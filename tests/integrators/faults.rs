@@ -36,3 +36,28 @@ fn each_mistake_is_noticed() {
         assert!(!wrong.agrees(), "{name} is not noticed: {wrong}");
     }
 }
+
+#[test]
+fn each_mistake_of_bidirectional_weights_is_noticed() {
+    let cases = [
+        (Fault::StrategyLeftOut, "Oren-Nayar", "sphere"),
+        (Fault::PdfInWrongMeasure, "Oren-Nayar", "sphere"),
+        (Fault::AdjointForgotten, "normal map", "area"),
+        (Fault::DeltaConnected, "glass", "sphere"),
+    ];
+    for (fault, material, light) in cases {
+        let built = build(material, light);
+        let Integrator::Bdpt(mut bdpt) = integrator(&built).named("bdpt") else {
+            panic!("not bidirectional");
+        };
+        let reference = runs(&built, integrator(&built), 256, 101);
+        let name = format!("{fault:?}: {material} under {light}");
+        let right = means().against_runs(&runs(&built, Integrator::Bdpt(bdpt), 64, 1), &reference);
+        println!("{name}: {right}");
+        right.assert_agrees(&name);
+        bdpt.fault = fault;
+        let wrong = means().against_runs(&runs(&built, Integrator::Bdpt(bdpt), 64, 1), &reference);
+        println!("with it: {wrong}");
+        assert!(!wrong.agrees(), "{name} is not noticed: {wrong}");
+    }
+}

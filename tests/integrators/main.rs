@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bdpt;
 mod covering;
 mod faults;
 mod kajiya;

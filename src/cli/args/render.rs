@@ -36,7 +36,7 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 
-    /// How light transport is estimated [default: the scene's] [possible values: path, kajiya]
+    /// How light transport is estimated [default: the scene's] [possible values: path, kajiya, bdpt, lightpath]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
 

@@ -30,7 +30,7 @@ impl Job<'_> {
             camera: &view.name,
         };
         let integrator = self.integrator(&prepared.desc)?;
-        let film = view.film();
+        let film = integrator.film(&view);
         let progress = reporter.progress();
         let stats = self
             .pool

@@ -19,13 +19,32 @@ pub static PATH: Entry = Entry::new(
 );
 
 /// All of them.
-pub static INTEGRATORS: [Entry; 2] = [
+pub static INTEGRATORS: [Entry; 4] = [
     PATH,
     Entry::new(
         "Integrator",
         "kajiya",
         "The rendering equation taken literally: the oracle that others are tested against",
         &[&MAX_DEPTH, &TERMINATION, &ALPHA, &BRANCHING, &DISTRIBUTION],
+    ),
+    Entry::new(
+        "Integrator",
+        "bdpt",
+        "Bidirectional path tracing with multiple importance sampling over all strategies",
+        &[
+            &MAX_DEPTH,
+            &LIGHT_SAMPLER,
+            &HEURISTIC,
+            &REGULARIZE,
+            &VISUALIZE_STRATEGIES,
+            &VISUALIZE_WEIGHTS,
+        ],
+    ),
+    Entry::new(
+        "Integrator",
+        "lightpath",
+        "Paths from the lights to the camera; lights seen directly from the camera to the light",
+        &[&MAX_DEPTH],
     ),
 ];
 
@@ -45,14 +64,20 @@ pub static STRATEGY: Parameter = Parameter::choice(
     &["mis", "bsdf", "light"],
     "How light is looked for: by directions drawn from BSDFs, by points of lights, or by both",
 );
-pub static HEURISTIC: Parameter =
-    Parameter::choice("heuristic", &["power", "balance"], "How the two of `mis` are weighed");
+pub static HEURISTIC: Parameter = Parameter::choice(
+    "heuristic",
+    &["power", "balance"],
+    "How several ways of finding light are weighed",
+);
 pub static SPLITTING: Parameter = Parameter::integer(
     "splitting",
     1,
     (1, 1024),
     "Paths that one becomes at its first surface that is not specular",
 );
+pub static VISUALIZE_STRATEGIES: Parameter =
+    Parameter::flag("visualizestrategies", false, "pbrt's; not supported if true");
+pub static VISUALIZE_WEIGHTS: Parameter = Parameter::flag("visualizeweights", false, "pbrt's; not supported if true");
 pub static REGULARIZE: Parameter = Parameter::flag("regularize", false, "pbrt's; not supported if true");
 pub static TERMINATION: Parameter = Parameter::choice(
     "termination",

@@ -1,6 +1,7 @@
 //! `Integrator`. Beside pbrt-v4's parameters there are Lucerna's: see docs/extensions.md.
 
 use super::reader::{ParamReader, unknown_type};
+use crate::desc::kinds::Parameter;
 use crate::desc::kinds::integrators as kinds;
 use crate::desc::{
     Distribution, Heuristic, INTEGRATORS, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc,
@@ -10,11 +11,9 @@ use crate::desc::{
 /// If a file has no integrator.
 const DEFAULT_MAX_DEPTH: u32 = 5;
 
-const LATER: [&str; 9] = [
+const LATER: [&str; 7] = [
     "ambientocclusion",
-    "bdpt",
     "function",
-    "lightpath",
     "mlt",
     "randomwalk",
     "simplepath",
@@ -47,11 +46,23 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
     });
     let max_depth = u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok();
     // The oracle chooses no lights.
-    let (light_sampler, kind) = if entry.name == "kajiya" {
-        let kajiya = kajiya(&mut reader, max_depth);
-        (LightSamplerKind::default(), IntegratorKind::Kajiya(kajiya))
-    } else {
-        (light_sampler(&mut reader), IntegratorKind::Path(path(&mut reader)))
+    let (light_sampler, kind) = match entry.name {
+        "kajiya" => {
+            let kajiya = kajiya(&mut reader, max_depth);
+            (LightSamplerKind::default(), IntegratorKind::Kajiya(kajiya))
+        }
+        "lightpath" => (LightSamplerKind::default(), IntegratorKind::LightTracer),
+        "bdpt" => {
+            for flag in [
+                &kinds::REGULARIZE,
+                &kinds::VISUALIZE_STRATEGIES,
+                &kinds::VISUALIZE_WEIGHTS,
+            ] {
+                unsupported_flag(&mut reader, flag);
+            }
+            (light_sampler(&mut reader), IntegratorKind::Bdpt(heuristic(&mut reader)))
+        }
+        _ => (light_sampler(&mut reader), IntegratorKind::Path(path(&mut reader))),
     };
     reader.finish_by(entry);
     IntegratorDesc {
@@ -62,22 +73,31 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
 }
 
 fn path(reader: &mut ParamReader<'_>) -> PathDesc {
-    if reader.bool_by(&kinds::REGULARIZE) {
-        let span = reader.span_of(kinds::REGULARIZE.name);
-        let message = "regularization is not supported";
-        reader.report().unsupported(span, message, "it is left out");
-    }
+    unsupported_flag(reader, &kinds::REGULARIZE);
     PathDesc {
         strategy: match reader.choice_by(&kinds::STRATEGY) {
             "bsdf" => Strategy::Bsdf,
             "light" => Strategy::Light,
             _ => Strategy::Mis,
         },
-        heuristic: match reader.choice_by(&kinds::HEURISTIC) {
-            "balance" => Heuristic::Balance,
-            _ => Heuristic::Power,
-        },
+        heuristic: heuristic(reader),
         splitting: reader.integer_by(&kinds::SPLITTING).unsigned_abs(),
+    }
+}
+
+fn heuristic(reader: &mut ParamReader<'_>) -> Heuristic {
+    match reader.choice_by(&kinds::HEURISTIC) {
+        "balance" => Heuristic::Balance,
+        _ => Heuristic::Power,
+    }
+}
+
+/// Says so if something of pbrt's that is not there is asked for.
+fn unsupported_flag(reader: &mut ParamReader<'_>, flag: &'static Parameter) {
+    if reader.bool_by(flag) {
+        let span = reader.span_of(flag.name);
+        let message = format!("`{}` is not supported", flag.name);
+        reader.report().unsupported(span, message, "it is left out");
     }
 }
 

@@ -36,13 +36,13 @@ fn options() {
             "",
         ),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),
-        ("Integrator @\"bdpt\" WorldBegin", "not supported yet", ""),
+        ("Integrator @\"sppm\" WorldBegin", "not supported yet", ""),
         ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
         ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
         ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
         (
             "Integrator \"path\" @\"bool regularize\" true WorldBegin",
-            "regularization",
+            "`regularize`",
             "",
         ),
     ];
