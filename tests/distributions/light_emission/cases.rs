@@ -102,7 +102,7 @@ pub fn constant(value: f32) -> CompiledSpectrum {
 }
 
 /// Grey pixels between 0 and 2, a third of them black.
-fn image(size: [usize; 2]) -> EmissionImage {
+pub fn image(size: [usize; 2]) -> EmissionImage {
     let rgb: Vec<[f32; 3]> = factors(size[0] * size[1]).into_iter().map(|f| [f; 3]).collect();
     EmissionImage::new(&rgb, size[0], RgbEmission::new(ColorMode::Rgb)).expect("pixels")
 }
@@ -138,7 +138,7 @@ fn ellipsoid() -> Sphere {
     Sphere::new(0.9, transform).expect("not singular")
 }
 
-fn motion() -> AnimatedTransform {
+pub fn motion() -> AnimatedTransform {
     let turn = DAffine3::from_rotation_y(1.1) * DAffine3::from_translation(DVec3::new(0.3, -0.2, 0.2));
     AnimatedTransform::new(DAffine3::IDENTITY, turn).expect("a motion")
 }
@@ -186,6 +186,26 @@ fn surfaces() -> Vec<Case> {
     ]
 }
 
+/// Centre and radius of a sphere before it moves.
+pub const BALL: (DVec3, f64) = (DVec3::new(0.2, 0.1, 0.0), 0.6);
+
+fn ball() -> Sphere {
+    Sphere::at(BALL.0, BALL.1).expect("a sphere")
+}
+
+fn moving_sphere(sphere: Sphere) -> AreaLight {
+    AreaLight::moving(MovingEmitter::sphere(sphere, motion()), constant(2.0), false).expect("an area")
+}
+
+/// The ball with the image of 8 x 4 pixels.
+pub fn painted_ball() -> Case {
+    let painted = moving_sphere(ball()).with_image(image([8, 4]).into(), Coordinates::Sphere(DMat3::IDENTITY));
+    Case {
+        dark: true,
+        ..Case::new("moving painted sphere", Light::Area(painted), ABOVE).with_flux(None)
+    }
+}
+
 /// Emitters at several times; the flux is that of the area then.
 fn moving() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -197,15 +217,13 @@ fn moving() -> Vec<Case> {
         let below = Case::new("moving triangle", Light::Area(light), BELOW);
         cases.push(below.with_flux(Some((2.0 * PI * area, 1e-4))));
 
-        let sphere = |sphere: Sphere| {
-            AreaLight::moving(MovingEmitter::sphere(sphere, motion()), constant(2.0), false).expect("an area")
-        };
-        cases.push(Case::new("moving ellipsoid", Light::Area(sphere(ellipsoid())), ABOVE));
-        let ball = Sphere::at(DVec3::new(0.2, 0.1, 0.0), 0.6).expect("a sphere");
-        cases.push(Case::new("moving sphere", Light::Area(sphere(ball.clone())), ABOVE));
-        let painted = sphere(ball).with_image(image([8, 4]).into(), Coordinates::Corners(UVS));
-        let painted = Case::new("moving painted sphere", Light::Area(painted), ABOVE).with_flux(None);
-        cases.push(Case { dark: true, ..painted });
+        cases.push(Case::new(
+            "moving ellipsoid",
+            Light::Area(moving_sphere(ellipsoid())),
+            ABOVE,
+        ));
+        cases.push(Case::new("moving sphere", Light::Area(moving_sphere(ball())), ABOVE));
+        cases.push(painted_ball());
         for case in cases.iter_mut().rev().take(4) {
             case.time = time;
         }

@@ -5,7 +5,7 @@ mod cases;
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use lucerna::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction};
 use lucerna::light::{
     DistantLight, EmissionDensity, EmissionImage, EmissionOrigin, EmissionSample, EnvironmentLight, GoniometricLight,
@@ -19,7 +19,7 @@ use super::common::chi2::Chi2;
 use super::common::means::Means;
 use super::common::random::Random;
 use super::lights::runs_of;
-use cases::{ABOVE, CORNERS, Case, Receiver, SCENE, cases, constant, triangle};
+use cases::{ABOVE, BALL, CORNERS, Case, Receiver, SCENE, cases, constant, image, motion, painted_ball, triangle};
 
 /// One failure in a hundred for all lights together.
 fn means(cases: &[Case], slack: f64) -> Means {
@@ -202,6 +202,33 @@ fn agree_on_position(stated: AreaPdf, density: EmissionDensity) -> bool {
     match density.position {
         LightDensity::Continuous(pdf) => (stated.0 / pdf.0 - 1.0).abs() < 2e-3,
         LightDensity::Delta => false,
+    }
+}
+
+/// What leaves a point of a painted sphere is what is painted there, wherever the sphere has moved to.
+#[test]
+fn paint_moves_with_its_sphere() {
+    let lambda = Wavelengths::rgb();
+    for time in [0.0, 0.4, 1.0] {
+        let case = Case { time, ..painted_ball() };
+        let mut random = Random::new(41);
+        for _ in 0..500 {
+            let Some(sample) = case.sample_le(&mut random) else {
+                continue;
+            };
+            let EmissionOrigin::Surface { p, .. } = sample.origin else {
+                panic!("a sphere has a surface");
+            };
+            let object = motion().at(time).inverse().transform_point3(p.as_dvec3());
+            let w = (object - BALL.0) / BALL.1;
+            let uv = DVec2::new(
+                (w.y.atan2(w.x) / (2.0 * PI)).rem_euclid(1.0),
+                1.0 - w.z.clamp(-1.0, 1.0).acos() / PI,
+            );
+            let painted = image([8, 4]).sample_bilinear(uv.as_vec2(), &lambda);
+            let error = (painted.0[0] - sample.le.0[0]).abs();
+            assert!(error < 1e-4, "{painted:?} and {:?} at {time}", sample.le);
+        }
     }
 }
 
