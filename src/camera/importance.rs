@@ -5,7 +5,9 @@
 //! sample, uniform over the pixel and the numbers of the lens, has a density p(o) p(w | o); it estimates the same integral by its
 //! [`Camera::importance`] I times L, so that
 //!
-//!     W_e cos θ = I p(o) p(w | o).
+//! ```text
+//! W_e cos θ = I p(o) p(w | o).
+//! ```
 //!
 //! Seen from the scene, there are two kinds of cameras, as of lights:
 //!

@@ -5,6 +5,7 @@ use super::mis::{Exponent, LightStart, Partial};
 use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage};
 use crate::geometry::{Ray, SurfaceInteraction};
 use crate::integrator::fault::Fault;
+use crate::integrator::shadow::Contribution;
 use crate::integrator::stage::Vertex;
 use crate::light::{EmissionDensity, Light, LightDensity, LightEnd, LightSample};
 use crate::material::TransportMode;
@@ -167,9 +168,7 @@ impl BdptIntegrator {
             }
             if let Some((ray, value)) = self.connection(event, light) {
                 if ray.is_valid() {
-                    stage
-                        .shadows
-                        .push(&ray, crate::integrator::shadow::Contribution { slot, value });
+                    stage.shadows.push(&ray, Contribution { slot, value });
                 } else {
                     stage.slots[slot as usize].broken = true;
                 }

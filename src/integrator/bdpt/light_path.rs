@@ -12,7 +12,7 @@ use crate::material::{Bsdf, TransportMode};
 use crate::math::Vec3;
 use crate::sampling::SampleStream;
 use crate::scene::Scene;
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{SampledSpectrum, Wavelengths};
 
 /// The first ray of a light subpath.
 #[derive(Clone, Copy, Debug)]
@@ -138,7 +138,8 @@ impl BdptIntegrator {
         let cos = f64::from(si.ng.dot(ray.direction).abs());
         let partial = match &lane.state.origin {
             Origin::Light(start) => {
-                let Some(start) = light_start(stage.scene, start, si, ray) else {
+                let lambda = &stage.slots[lane.slot as usize].lambda;
+                let Some(start) = light_start(stage.scene, start, si, ray, lambda) else {
                     return;
                 };
                 self.exponent().light_start(&start, cos)
@@ -213,15 +214,26 @@ impl BdptIntegrator {
 }
 
 /// How the first vertex of a light subpath came about, where light samples choose lights by the light sampler of `path`. `None` if the
-/// light does not shine there.
-fn light_start(scene: &Scene, start: &LightRay, si: &SurfaceInteraction, ray: &Ray) -> Option<LightStart> {
+/// light does not shine there: what comes through a portal does not light what is in front of it.
+fn light_start(
+    scene: &Scene,
+    start: &LightRay,
+    si: &SurfaceInteraction,
+    ray: &Ray,
+    lambda: &Wavelengths,
+) -> Option<LightStart> {
     let pmf = scene.light_sampler().pmf(si.p, si.ns, start.light);
     let density = match (scene.light(start.light), start.origin) {
         _ if start.has_delta_position => f64::from(si.p.distance_squared(ray.origin)),
         (Light::Area(light), EmissionOrigin::Surface { p, ng, .. }) => {
             f64::from(light.pdf_li(si.p, p, ng, ray.time).0) * f64::from(start.cos_theta)
         }
-        (Light::Environment(light), _) => f64::from(light.pdf_li(si.p, -ray.direction, ray.time).0),
+        (Light::Environment(light), _) => {
+            if light.le(si.p, -ray.direction, ray.time, lambda).is_black() {
+                return None;
+            }
+            f64::from(light.pdf_li(si.p, -ray.direction, ray.time).0)
+        }
         _ => 1.0,
     };
     Some(LightStart {

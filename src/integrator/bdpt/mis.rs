@@ -6,29 +6,39 @@
 //! Multiple importance sampling (Veach 1997, 9.2) weighs what it finds by (n_s p_s)^β over the sum of all (n_i p_i)^β, with β = 1 for
 //! the balance and β = 2 for the power heuristic. With r(x) = x^β this is
 //!
-//!     1 / (w_light + 1 + w_camera),   w_light  = Σ_{i<s} r(p_i / p_s),   w_camera = Σ_{i>s} r(p_i / p_s).
+//! ```text
+//! 1 / (w_light + 1 + w_camera),   w_light  = Σ_{i<s} r(p_i / p_s),   w_camera = Σ_{i>s} r(p_i / p_s).
+//! ```
 //!
 //! Neighbouring strategies differ in one vertex, p_{i} / p_{i+1} = ←p_i / →p_i, so that both sums nest:
 //!
-//!     w_light = r(←p_{s-1}/→p_{s-1}) (1 + r(←p_{s-2}/→p_{s-2}) (1 + ...))                                                      (1)
+//! ```text
+//! w_light = r(←p_{s-1}/→p_{s-1}) (1 + r(←p_{s-2}/→p_{s-2}) (1 + ...))                                                      (1)
+//! ```
 //!
 //! and the same from the other end. Seen from the last vertex y of a subpath, with z the vertex it is connected to, only two factors
 //! depend on z: ←p(y), and, as a BSDF's density depends on where one comes from, ←p of the vertex before y. What is left is known when
 //! y is made, is kept there, and grows from vertex to vertex (van Antwerpen 2011; Georgiev 2012, "Implementing Vertex Connection and
 //! Merging", whose names these are):
 //!
-//!     w = r(←p(y)) (vcm + r(←p_ω(y → before y)) vc)                                                                             (2)
-//!     vcm = r(1 / →p(y))                                  the strategy that is connected one vertex earlier, over that part of (1)
-//!     vc  = r(g / →p(y)) (vcm' + r(←p_ω') vc')            all before, from the values at the vertex before y                    (3)
+//! ```text
+//! w = r(←p(y)) (vcm + r(←p_ω(y → before y)) vc)                                                                             (2)
+//! vcm = r(1 / →p(y))                                  the strategy that is connected one vertex earlier, over that part of (1)
+//! vc  = r(g / →p(y)) (vcm' + r(←p_ω') vc')            all before, from the values at the vertex before y                    (3)
+//! ```
 //!
 //! where p_ω is by solid angle, g = |cos| / d² takes it to the area of the vertex before y, and →p(y) = →p_ω |cos_y| / d². So
 //!
-//!     scatter from a vertex into w:    vc ← r(|cos_w| / →p_ω) (vcm + r(←p_ω) vc),   vcm ← r(1 / →p_ω)                           (4)
-//!     arrive at the next one:          vcm ← vcm r(d² / |cos|),   vc ← vc / r(|cos|)                                            (5)
+//! ```text
+//! scatter from a vertex into w:    vc ← r(|cos_w| / →p_ω) (vcm + r(←p_ω) vc),   vcm ← r(1 / →p_ω)                           (4)
+//! arrive at the next one:          vcm ← vcm r(d² / |cos|),   vc ← vc / r(|cos|)                                            (5)
+//! ```
 //!
 //! A vertex that scatters by a delta lobe cannot be connected: its vcm is 0, →p_ω and ←p_ω are the same probability and cancel:
 //!
-//!     vc ← r(|cos_w|) vc,   vcm ← 0                                                                                             (6)
+//! ```text
+//! vc ← r(|cos_w|) vc,   vcm ← 0                                                                                             (6)
+//! ```
 //!
 //! Cosines of densities are those to geometric normals. What russian roulette does is left out of all densities alike: the weights of
 //! a path still add up to one.
