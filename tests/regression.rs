@@ -120,3 +120,36 @@ fn a_lamp_close_behind_a_screen_is_dark() {
         }
     }
 }
+
+/// A spotlight of a tenth of a degree was some percent too bright for its power: its solid angle came of a cosine in single
+/// precision.
+#[test]
+fn narrow_spotlights_have_the_intensity_of_their_power() {
+    for degrees in [1.0_f64, 0.1, 0.02] {
+        let text = format!(
+            "LookAt 0 0 9  0 0 0  0 1 0\n\
+             Camera \"orthographic\" \"float screenwindow\" [ -0.001 0.001 -0.001 0.001 ]\n\
+             Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n\
+             PixelFilter \"box\" Integrator \"path\" \"integer maxdepth\" 1\n\
+             WorldBegin\n\
+             LightSource \"spot\" \"rgb I\" [ 1 1 1 ] \"point3 from\" [ 0 0 10 ] \"point3 to\" [ 0 0 0 ]\n\
+             \"float coneangle\" {degrees} \"float conedeltaangle\" 0 \"float power\" 2e-5\n\
+             Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n\
+             Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ -1 -1 0  1 -1 0  1 1 0  -1 1 0 ]"
+        );
+        let solid_angle = 4.0 * std::f64::consts::PI * (0.5 * degrees.to_radians()).sin().powi(2);
+        let expected = 2e-5 / solid_angle / 100.0 * 0.5 / std::f64::consts::PI;
+        // In rgb mode nothing is left to chance.
+        for (backend, color) in combinations().filter(|(_, color)| *color == ColorMode::Rgb) {
+            let built = Built::new(parse(&text), backend, color);
+            let view = built.view(0, &ViewOverrides::default());
+            for value in built.picture(&view) {
+                let error = f64::from(value) / expected - 1.0;
+                assert!(
+                    error.abs() < 1e-3,
+                    "{degrees}, {backend}, {color:?}: {value}, not {expected}"
+                );
+            }
+        }
+    }
+}

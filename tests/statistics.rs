@@ -3,6 +3,7 @@
 mod common;
 
 use common::chi2::Chi2;
+use common::covering::Covering;
 use common::means::Means;
 use common::random::Random;
 use common::reference::{Reference, Report, Rule, Runs, compare};
@@ -257,4 +258,46 @@ fn the_reference_rule_leaves_out_what_the_mask_names() {
         ..rule
     };
     assert!(compare(&runs, &reference, &rule).rms_z < report.rms_z);
+}
+
+#[test]
+fn covering_arrays_cover_every_combination() {
+    let anything = |_: &[Option<usize>]| true;
+    // The last factor's second level does not go with the first one's third.
+    let some = |row: &[Option<usize>]| !(row[0] == Some(2) && row[row.len() - 1] == Some(1));
+    let cases: [(&[usize], usize); 5] = [
+        (&[3, 4, 2], 1),
+        (&[5, 5, 2, 3, 2, 2], 2),
+        (&[9, 6, 5, 5, 3, 2, 2, 2, 2], 2),
+        (&[4, 3, 3, 2, 2, 2], 3),
+        (&[3, 2, 2], 3),
+    ];
+    for (levels, strength) in cases {
+        for (i, allowed) in [&anything as &dyn Fn(&[Option<usize>]) -> bool, &some]
+            .into_iter()
+            .enumerate()
+        {
+            let covering = Covering {
+                levels,
+                strength,
+                allowed,
+            };
+            let rows = covering.rows();
+            let name = format!("{levels:?} by {strength}, constraint {i}: {} rows", rows.len());
+            println!("{name} where {} is the fewest", covering.fewest());
+            assert!(covering.missing(&rows).is_empty(), "{name}");
+            for row in &rows {
+                assert!(
+                    row.iter().zip(levels).all(|(level, count)| level < count),
+                    "{name}: {row:?}"
+                );
+                let row: Vec<_> = row.iter().copied().map(Some).collect();
+                assert!(allowed(&row), "{name}: {row:?}");
+            }
+            // Greedy rows are more than the fewest, but not by much; and not one of them is there for nothing at the end.
+            assert!(rows.len() as f64 <= 1.5 * covering.fewest() as f64, "{name}");
+            assert!(!covering.missing(&rows[..rows.len() - 1]).is_empty(), "{name}");
+            assert_eq!(rows, covering.rows(), "{name}");
+        }
+    }
 }

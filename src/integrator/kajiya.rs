@@ -9,14 +9,15 @@
 //! Where the BSDF is a delta function directions are drawn from itself. Where it has delta lobes beside others and P does not know
 //! them, each of the N draws is from P or, by a fair coin, from the BSDF, of which only the delta lobes count then.
 
-use super::lane::{Lane, Origin};
+use super::lane::Lane;
 use super::numbers::EventNumbers;
 use super::stage::{Estimator, Stage, Vertex};
 use crate::desc::{Distribution, Termination};
-use crate::geometry::SurfaceInteraction;
+use crate::geometry::{Ray, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::{Vec2, Vec3};
 use crate::sampling::{SolidAnglePdf, warp};
+use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
 
 /// The literal estimator.
@@ -42,7 +43,12 @@ struct Direction {
 }
 
 impl Estimator for KajiyaIntegrator {
-    fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>) {
+    type State = ();
+    type Memory<'s> = ();
+
+    fn camera_state(&self, _view: &View, _ray: &Ray) {}
+
+    fn shade<'s>(&self, stage: &mut Stage<'_, 's, Self>, vertex: Vertex<'_, ()>) {
         let Vertex { lane, ray, cone, .. } = vertex;
         let Some(si) = vertex.surface else {
             for (_, light) in stage.scene.environments() {
@@ -70,7 +76,6 @@ impl Estimator for KajiyaIntegrator {
         let whole = Lane {
             beta: lane.beta * (1.0 / (1.0 - alpha)),
             cone,
-            origin: Origin::Delta,
             ..*lane
         };
         if !bsdf.is_delta() {
@@ -144,7 +149,13 @@ impl KajiyaIntegrator {
 }
 
 /// Adds the light of all lights that no direction drawn from a density meets.
-fn add_delta_lights(stage: &mut Stage<'_>, lane: &Lane, si: &SurfaceInteraction, bsdf: &Bsdf, u: Vec2) {
+fn add_delta_lights(
+    stage: &mut Stage<'_, '_, KajiyaIntegrator>,
+    lane: &Lane<()>,
+    si: &SurfaceInteraction,
+    bsdf: &Bsdf,
+    u: Vec2,
+) {
     for light in stage.scene.lights().iter().filter(|light| light.is_delta()) {
         let Some(sample) = light.sample_li(si.p, si.time, u, &stage.slot(lane).lambda) else {
             continue;

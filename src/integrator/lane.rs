@@ -1,8 +1,8 @@
 //! Slots and lanes: the state of a wave.
 
 use crate::geometry::{Ray, RayCone, RayQueue};
-use crate::math::Vec3;
-use crate::sampling::{SampleStream, SolidAnglePdf};
+use crate::material::TransportMode;
+use crate::sampling::SampleStream;
 use crate::spectrum::{SampledSpectrum, Wavelengths};
 
 /// A pixel sample.
@@ -24,19 +24,10 @@ pub(super) struct Slot {
     pub broken: bool,
 }
 
-/// Where a lane's ray came from, which says how else the light that it meets could have been found.
+/// A live path. `S` is what its estimator has to know of the way that it came.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Origin {
-    /// The camera or a delta lobe: in no other way.
-    Delta,
-    /// A BSDF sample with this density, at a point of this shading normal: by light sampling too.
-    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
-}
-
-/// A live path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lane {
-    /// Its slot; [`Lane::NO_SLOT`] for a camera ray that is traced for the sake of its packet only.
+pub(super) struct Lane<S> {
+    /// Its slot; [`NO_SLOT`] for a camera ray that is traced for the sake of its packet only.
     pub slot: u32,
     /// Whether the path has been split, which it is once at most.
     pub split: bool,
@@ -47,38 +38,50 @@ pub(super) struct Lane {
     /// Product of the squared relative indices of the refractions so far: without it Russian roulette would see the squeezing
     /// of radiance inside glass as absorption.
     pub eta_scale: f32,
-    /// Where the ray came from.
-    pub origin: Origin,
     /// How wide the ray is.
     pub cone: RayCone,
+    /// The estimator's.
+    pub state: S,
 }
 
-impl Lane {
-    /// No slot: nothing is wanted of this ray.
-    pub const NO_SLOT: u32 = u32::MAX;
-}
+/// The slot of a camera ray that is traced for the sake of its packet only: nothing is wanted of it.
+pub(super) const NO_SLOT: u32 = u32::MAX;
 
 /// Paths of the same number of scattering events, and the rays that they go on by.
-#[derive(Debug, Default)]
-pub(super) struct Batch {
+#[derive(Debug)]
+pub(super) struct Batch<S> {
+    /// Which end the paths started from: what they carry.
+    pub mode: TransportMode,
     /// Scattering events before the rays.
     pub depth: u32,
     /// The paths.
-    pub lanes: Vec<Lane>,
+    pub lanes: Vec<Lane<S>>,
     /// Their rays.
     pub rays: RayQueue,
 }
 
-impl Batch {
-    /// Forgets all paths.
-    pub fn clear(&mut self) {
+impl<S> Default for Batch<S> {
+    fn default() -> Self {
+        Self {
+            mode: TransportMode::Radiance,
+            depth: 0,
+            lanes: Vec::new(),
+            rays: RayQueue::default(),
+        }
+    }
+}
+
+impl<S: Copy> Batch<S> {
+    /// Forgets all paths; others of `depth` will follow.
+    pub fn restart(&mut self, mode: TransportMode, depth: u32) {
+        (self.mode, self.depth) = (mode, depth);
         self.lanes.clear();
         self.rays.clear();
     }
 
     /// Adds a path with a ray that is valid.
     #[inline]
-    pub fn push(&mut self, lane: &Lane, ray: &Ray) {
+    pub fn push(&mut self, lane: &Lane<S>, ray: &Ray) {
         self.rays.push(ray);
         self.lanes.push(*lane);
     }

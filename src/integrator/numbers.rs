@@ -7,6 +7,8 @@ use crate::sampling::SampleStream;
 /// Groups of random numbers that the camera sample uses.
 pub(super) const FILM_GROUP: u32 = 0;
 pub(super) const DETECTOR_GROUP: u32 = 1;
+/// The branch of a sample's numbers that its light path has, which shares the groups of the scattering events.
+pub(super) const LIGHT_BRANCH: u32 = u32::MAX;
 /// The first group of the scattering events, each of which has two.
 const FIRST_EVENT_GROUP: u32 = 2;
 

@@ -5,7 +5,7 @@
 //! with a weight of 1/N. As both techniques take the same number, the weights between them stay.
 
 use super::fault::Fault;
-use super::lane::{Lane, Origin};
+use super::lane::Lane;
 use super::numbers::EventNumbers;
 use super::stage::{Estimator, Stage, Vertex};
 use crate::desc::{Heuristic, Strategy};
@@ -14,6 +14,7 @@ use crate::light::{LightDensity, LightEnd, LightSample};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
 use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
+use crate::scene::View;
 
 /// The path tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,10 +38,22 @@ const FIRST_ROULETTE_DEPTH: u32 = 2;
 const LAST_SURVIVAL_DEPTH: u32 = 64;
 const LAST_SURVIVAL: f32 = 0.95;
 
+/// Where a path's ray came from, which says how else the light that it meets could have been found.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin {
+    /// The camera or a delta lobe: in no other way.
+    Delta,
+    /// A BSDF sample with this density, at a point of this shading normal: by light sampling too.
+    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
+}
+
+type PathLane = Lane<Origin>;
+type PathStage<'a, 's> = Stage<'a, 's, PathIntegrator>;
+
 /// A scattering event.
 struct Event<'a> {
     /// The path; of a split one, with its part of the throughput.
-    lane: &'a Lane,
+    lane: &'a PathLane,
     si: &'a SurfaceInteraction,
     bsdf: &'a Bsdf<'a>,
     numbers: &'a EventNumbers,
@@ -49,8 +62,16 @@ struct Event<'a> {
 }
 
 impl Estimator for PathIntegrator {
+    type State = Origin;
+    type Memory<'s> = ();
+
     #[inline]
-    fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>) {
+    fn camera_state(&self, _view: &View, _ray: &Ray) -> Origin {
+        Origin::Delta
+    }
+
+    #[inline]
+    fn shade<'s>(&self, stage: &mut PathStage<'_, 's>, vertex: Vertex<'_, Origin>) {
         let Vertex { lane, ray, cone, .. } = vertex;
         let Some(si) = vertex.surface else {
             self.add_environment(stage, lane, ray);
@@ -90,7 +111,7 @@ impl Estimator for PathIntegrator {
 impl PathIntegrator {
     /// Looks for light from a scattering event, and goes on from it.
     #[inline]
-    fn scatter(&self, stage: &mut Stage<'_>, event: &Event<'_>) {
+    fn scatter(&self, stage: &mut PathStage<'_, '_>, event: &Event<'_>) {
         if self.strategy != Strategy::Bsdf && !event.bsdf.is_delta() {
             self.sample_light(stage, event);
         }
@@ -102,7 +123,7 @@ impl PathIntegrator {
         let mut next = Lane {
             beta: lane.beta * sample.weight(),
             eta_scale: lane.eta_scale * sample.eta * sample.eta,
-            origin: match sample.density {
+            state: match sample.density {
                 Density::Delta(_) => Origin::Delta,
                 Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
             },
@@ -125,7 +146,7 @@ impl PathIntegrator {
     /// The probability with which a path goes on after the scattering event `depth`: the square root of its throughput, which on the
     /// Cornell box needs a sixth fewer rays than the throughput itself for the same error. A path that was split is as worthy of
     /// going on as the whole.
-    fn survival(&self, depth: u32, lane: &Lane) -> f32 {
+    fn survival(&self, depth: u32, lane: &PathLane) -> f32 {
         if depth < FIRST_ROULETTE_DEPTH {
             return 1.0;
         }
@@ -140,7 +161,7 @@ impl PathIntegrator {
     }
 
     /// Adds what the environment sends along a ray that left the scene.
-    fn add_environment(&self, stage: &mut Stage<'_>, lane: &Lane, ray: &Ray) {
+    fn add_environment(&self, stage: &mut PathStage<'_, '_>, lane: &PathLane, ray: &Ray) {
         let slot = &mut stage.slots[lane.slot as usize];
         for (id, light) in stage.scene.environments() {
             let weight = self.weight_of_hit(lane, |p, n| {
@@ -153,7 +174,7 @@ impl PathIntegrator {
 
     /// Adds what the surface that a ray hit emits.
     #[inline]
-    fn add_emission(&self, stage: &mut Stage<'_>, lane: &Lane, si: &SurfaceInteraction) {
+    fn add_emission(&self, stage: &mut PathStage<'_, '_>, lane: &PathLane, si: &SurfaceInteraction) {
         let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) else {
             return;
         };
@@ -176,8 +197,8 @@ impl PathIntegrator {
     /// The weight of light that a lane's ray met, which light samples from point p with normal n would have found with the density
     /// `pdf_light(p, n)`.
     #[inline]
-    fn weight_of_hit(&self, lane: &Lane, pdf_light: impl FnOnce(Vec3, Vec3) -> SolidAnglePdf) -> f32 {
-        match lane.origin {
+    fn weight_of_hit(&self, lane: &PathLane, pdf_light: impl FnOnce(Vec3, Vec3) -> SolidAnglePdf) -> f32 {
+        match lane.state {
             Origin::Delta => 1.0,
             Origin::Sampled { p, n, pdf } => match self.strategy {
                 Strategy::Bsdf => 1.0,
@@ -201,7 +222,7 @@ impl PathIntegrator {
 
     /// Samples a point of a light and asks for its light.
     #[inline]
-    fn sample_light(&self, stage: &mut Stage<'_>, event: &Event<'_>) -> Option<()> {
+    fn sample_light(&self, stage: &mut PathStage<'_, '_>, event: &Event<'_>) -> Option<()> {
         let Event { lane, si, numbers, .. } = event;
         let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
         let light = stage.scene.light(chosen.light);

@@ -55,10 +55,10 @@ pub(super) fn render_tiles<E: Estimator>(
     let total = film.crop().area() * u64::from(end - start);
     let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
     let per_thread = rayon::broadcast(|_| {
-        let mut wave = Wave::new(scene, view);
+        let mut wave = Wave::new(scene, view, estimator);
         while let Some(unit) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
             let rect = lock(unit.tile).rect();
-            wave.render(estimator, unit.tile, rect, unit.samples.clone());
+            wave.render(unit.tile, rect, unit.samples.clone());
             let samples = rect.area() * unit.samples.len() as u64;
             progress.advance(done.fetch_add(samples, Ordering::Relaxed) + samples, total);
         }

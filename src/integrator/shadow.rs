@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::accel::RayKind;
 use crate::geometry::{LANES, Ray, RayQueue, SurfaceInteraction};
 use crate::light::LightEnd;
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 use crate::scene::Scene;
 use crate::spectrum::SampledSpectrum;
 
@@ -18,26 +18,46 @@ pub(super) fn shadow_ray(si: &SurfaceInteraction, wi: Vec3, end: LightEnd) -> Ra
     }
 }
 
-/// What arrives if a shadow ray is not blocked.
+/// What arrives at a slot if a shadow ray is not blocked.
 #[derive(Clone, Copy, Debug)]
-struct Contribution {
-    slot: u32,
-    value: SampledSpectrum,
+pub(super) struct Contribution {
+    pub slot: u32,
+    pub value: SampledSpectrum,
+}
+
+/// What a light path brings to a place of the film if a shadow ray is not blocked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SplatContribution {
+    /// Whose wavelengths it has.
+    pub slot: u32,
+    /// In pixels of the whole picture; may be outside of it by the radius of the filter.
+    pub film: Vec2,
+    /// Spectral radiance, to be divided by the number of all light paths.
+    pub value: SampledSpectrum,
 }
 
 /// Shadow rays and their contributions, in the order in which they were found.
-#[derive(Debug, Default)]
-pub(super) struct ShadowQueue {
+#[derive(Debug)]
+pub(super) struct ShadowQueue<T> {
     rays: RayQueue,
-    contributions: Vec<Contribution>,
+    contributions: Vec<T>,
 }
 
-impl ShadowQueue {
-    /// Adds a ray, which must be valid, that brings `value` to `slot`.
+impl<T> Default for ShadowQueue<T> {
+    fn default() -> Self {
+        Self {
+            rays: RayQueue::default(),
+            contributions: Vec::new(),
+        }
+    }
+}
+
+impl<T: Copy> ShadowQueue<T> {
+    /// Adds a ray, which must be valid, and what it brings.
     #[inline]
-    pub fn push(&mut self, ray: &Ray, slot: u32, value: SampledSpectrum) {
+    pub fn push(&mut self, ray: &Ray, contribution: T) {
         self.rays.push(ray);
-        self.contributions.push(Contribution { slot, value });
+        self.contributions.push(contribution);
     }
 
     /// Number of rays.
@@ -47,7 +67,7 @@ impl ShadowQueue {
 
     /// Traces all rays, hands the contributions of those that are not blocked to `add` in order, and empties the queue. Returns
     /// the time inside the backend.
-    pub fn flush(&mut self, scene: &Scene, mut add: impl FnMut(u32, SampledSpectrum)) -> Duration {
+    pub fn flush(&mut self, scene: &Scene, mut add: impl FnMut(T)) -> Duration {
         if self.contributions.is_empty() {
             return Duration::ZERO;
         }
@@ -57,7 +77,7 @@ impl ShadowQueue {
         for (rays, contributions) in self.rays.packets().iter().zip(self.contributions.chunks(LANES)) {
             for (lane, contribution) in contributions.iter().enumerate() {
                 if !rays.is_occluded(lane) {
-                    add(contribution.slot, contribution.value);
+                    add(*contribution);
                 }
             }
         }

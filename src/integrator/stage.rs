@@ -4,23 +4,41 @@
 use super::RenderStats;
 use super::lane::{Batch, Lane, Slot};
 use super::numbers::EventNumbers;
-use super::shadow::{ShadowQueue, shadow_ray};
+use super::shadow::{Contribution, ShadowQueue, SplatContribution, shadow_ray};
 use super::wave::WAVE_LANES;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::light::LightSample;
-use crate::scene::Scene;
+use crate::material::TransportMode;
+use crate::sampling::SampleStream;
+use crate::scene::{Scene, View};
 use crate::spectrum::SampledSpectrum;
 
-/// An estimator of the radiance along camera rays, one scattering event after the other.
-pub(super) trait Estimator: Sync {
+/// An estimator of the radiance along camera rays, one scattering event after the other; or of what light paths bring to the
+/// camera.
+pub(super) trait Estimator: Sync + Sized {
+    /// What a path carries from event to event, beside what [`Lane`] has.
+    type State: Copy;
+    /// What a wave keeps of its light paths, to connect its camera paths to.
+    type Memory<'s>: Default;
+    /// Whether each pixel sample has a light path, which goes before its camera path.
+    const LIGHT_PATHS: bool = false;
+
+    /// What a camera path starts with.
+    fn camera_state(&self, view: &View, ray: &Ray) -> Self::State;
+
+    /// Starts the light path of a slot.
+    fn emit<'s>(&self, stage: &mut Stage<'_, 's, Self>, slot: u32, stream: SampleStream) {
+        let _ = (stage, slot, stream);
+    }
+
     /// Takes a path to its next scattering event.
-    fn shade(&self, stage: &mut Stage<'_>, vertex: Vertex<'_>);
+    fn shade<'s>(&self, stage: &mut Stage<'_, 's, Self>, vertex: Vertex<'_, Self::State>);
 }
 
 /// Where a lane's ray ended.
-pub(super) struct Vertex<'a> {
+pub(super) struct Vertex<'a, S> {
     /// The path.
-    pub lane: &'a Lane,
+    pub lane: &'a Lane<S>,
     /// Its ray.
     pub ray: &'a Ray,
     /// What it hit; `None` if it left the scene.
@@ -35,63 +53,91 @@ pub(super) struct Vertex<'a> {
 const MOST_SHADOWS: usize = 1 << 14;
 
 /// The shading of a batch.
-pub(super) struct Stage<'a> {
+pub(super) struct Stage<'a, 's, E: Estimator> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub scene: &'s Scene,
+    /// The picture.
+    pub view: &'s View,
+    /// What the paths of the batch carry.
+    pub mode: TransportMode,
     /// Scattering events before this stage.
     pub depth: u32,
     /// All slots.
     pub slots: &'a mut [Slot],
-    pub(super) shadows: &'a mut ShadowQueue,
-    pub(super) pending: &'a mut Vec<Batch>,
-    pub(super) spare: &'a mut Vec<Batch>,
+    /// The estimator's own.
+    pub memory: &'a mut E::Memory<'s>,
+    pub(super) shadows: &'a mut ShadowQueue<Contribution>,
+    pub(super) splats: &'a mut ShadowQueue<SplatContribution>,
+    pub(super) landed: &'a mut Vec<SplatContribution>,
+    pub(super) pending: &'a mut Vec<Batch<E::State>>,
+    pub(super) spare: &'a mut Vec<Batch<E::State>>,
     /// Where paths that go on are collected.
-    pub(super) next: Batch,
+    pub(super) next: Batch<E::State>,
 }
 
-impl Stage<'_> {
+impl<E: Estimator> Stage<'_, '_, E> {
     /// The slot of a lane.
     #[inline]
-    pub fn slot(&mut self, lane: &Lane) -> &mut Slot {
+    pub fn slot(&mut self, lane: &Lane<E::State>) -> &mut Slot {
         &mut self.slots[lane.slot as usize]
     }
 
     /// Adds light to the slot of a lane.
     #[inline]
-    pub fn add(&mut self, lane: &Lane, l: SampledSpectrum) {
+    pub fn add(&mut self, lane: &Lane<E::State>, l: SampledSpectrum) {
         self.slots[lane.slot as usize].l += l;
     }
 
     /// Sends a path on its way by `ray`.
     #[inline]
-    pub fn go_on(&mut self, lane: &Lane, ray: &Ray) {
+    pub fn go_on(&mut self, lane: &Lane<E::State>, ray: &Ray) {
         if !ray.is_valid() {
             self.slot(lane).broken = true;
             return;
         }
         if self.next.lanes.len() == WAVE_LANES as usize {
+            let depth = self.next.depth;
             self.finish_batch();
-            self.start_batch();
+            self.start_batch(depth);
         }
         self.next.push(lane, ray);
     }
 
     /// Adds `value` to the slot of a lane if nothing is between `si` and the point of a light that was sampled.
     #[inline]
-    pub fn connect(&mut self, lane: &Lane, si: &SurfaceInteraction, light: &LightSample, value: SampledSpectrum) {
-        let ray = shadow_ray(si, light.wi, light.end);
+    pub fn connect(
+        &mut self,
+        lane: &Lane<E::State>,
+        si: &SurfaceInteraction,
+        light: &LightSample,
+        value: SampledSpectrum,
+    ) {
+        self.add_unless_occluded(lane.slot, &shadow_ray(si, light.wi, light.end), value);
+    }
+
+    /// Adds `value` to a slot if nothing is in the way of `ray`.
+    #[inline]
+    pub fn add_unless_occluded(&mut self, slot: u32, ray: &Ray, value: SampledSpectrum) {
         if ray.is_valid() {
-            self.shadows.push(&ray, lane.slot, value);
+            self.shadows.push(ray, Contribution { slot, value });
         } else {
-            self.slot(lane).broken = true;
+            self.slots[slot as usize].broken = true;
         }
     }
 
-    /// Begins to collect paths.
-    pub(super) fn start_batch(&mut self) {
+    /// Splats a contribution of a slot's light path if nothing is in the way of `ray`.
+    pub fn splat_unless_occluded(&mut self, ray: &Ray, splat: SplatContribution) {
+        if ray.is_valid() {
+            self.splats.push(ray, splat);
+        } else {
+            self.slots[splat.slot as usize].broken = true;
+        }
+    }
+
+    /// Begins to collect paths of `depth`.
+    pub(super) fn start_batch(&mut self, depth: u32) {
         self.next = self.spare.pop().unwrap_or_default();
-        self.next.clear();
-        self.next.depth = self.depth + 1;
+        self.next.restart(self.mode, depth);
     }
 
     /// Leaves the collected paths to be traced.
@@ -106,17 +152,18 @@ impl Stage<'_> {
 
     /// Traces the shadow rays if there are many.
     pub(super) fn limit_shadows(&mut self, stats: &mut RenderStats) {
-        if self.shadows.len() >= MOST_SHADOWS {
+        if self.shadows.len() + self.splats.len() >= MOST_SHADOWS {
             self.flush_shadows(stats);
         }
     }
 
     /// Traces all shadow rays.
     pub(super) fn flush_shadows(&mut self, stats: &mut RenderStats) {
-        stats.shadow_rays += self.shadows.len() as u64;
-        let slots = &mut *self.slots;
-        stats.backend_time += self
-            .shadows
-            .flush(self.scene, |slot, value| slots[slot as usize].l += value);
+        stats.shadow_rays += (self.shadows.len() + self.splats.len()) as u64;
+        let (slots, landed) = (&mut *self.slots, &mut *self.landed);
+        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, value }| {
+            slots[slot as usize].l += value
+        });
+        stats.backend_time += self.splats.flush(self.scene, |splat| landed.push(splat));
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! A *slot* is a pixel sample; it stays until its last shadow ray is back, then is turned into sensor values and retires. A *lane*
 //! is a live path, and names its slot. The lanes that go on after a stage make up the next batch. Where paths branch they are
-//! several; the last one goes first, so that their number stays in proportion to the depth of paths.
+//! several; the last one goes first, so that their number stays in proportion to the depth of paths. If the estimator has light
+//! paths, one for each slot, all of a wave go before its camera paths.
 //!
 //! Camera rays are packed by blocks of 4 x 2 pixels at absolute coordinates: what a packet is made of does not depend on the crop.
 //! A block that the crop touches is traced whole, as a backend's answer to coherent rays may depend on their mates. Where it does
@@ -12,15 +13,16 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::time::Instant;
 
-use super::lane::{Batch, Lane, Origin, Slot};
-use super::numbers::{DETECTOR_GROUP, EventLanes, FILM_GROUP};
-use super::shadow::ShadowQueue;
+use super::lane::{Batch, Lane, NO_SLOT, Slot};
+use super::numbers::{DETECTOR_GROUP, EventLanes, FILM_GROUP, LIGHT_BRANCH};
+use super::shadow::{Contribution, ShadowQueue, SplatContribution};
 use super::stage::{Estimator, Stage, Vertex};
 use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE, TileSums, lock};
 use crate::geometry::{HitPacket, LANES, Ray, RayCone, SurfaceLanes};
+use crate::material::TransportMode;
 use crate::math::{Vec2, Vectorizer};
 use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
@@ -33,38 +35,47 @@ const BLOCK: [u32; 2] = [4, 2];
 pub(super) const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
 
 /// The paths that a thread is working on.
-pub(super) struct Wave<'a> {
-    scene: &'a Scene,
-    view: &'a View,
+pub(super) struct Wave<'s, E: Estimator> {
+    scene: &'s Scene,
+    view: &'s View,
+    estimator: &'s E,
     /// Whether whole tiles are rendered, as packets' answers depend on all their lanes.
     whole_tiles: bool,
     vectorizer: Vectorizer,
     slots: Vec<Slot>,
+    memory: E::Memory<'s>,
     /// Batches to come, the next one last.
-    pending: Vec<Batch>,
+    pending: Vec<Batch<E::State>>,
     /// Batches whose memory can be used again.
-    spare: Vec<Batch>,
+    spare: Vec<Batch<E::State>>,
     hits: Vec<HitPacket>,
     surfaces: SurfaceLanes,
-    shadows: ShadowQueue,
+    shadows: ShadowQueue<Contribution>,
+    splats: ShadowQueue<SplatContribution>,
+    /// What light paths have brought to the film.
+    landed: Vec<SplatContribution>,
     stats: RenderStats,
 }
 
-impl<'a> Wave<'a> {
-    pub fn new(scene: &'a Scene, view: &'a View) -> Self {
+impl<'s, E: Estimator> Wave<'s, E> {
+    pub fn new(scene: &'s Scene, view: &'s View, estimator: &'s E) -> Self {
         let accel = scene.accel();
         let independent = |kind| accel.is_mate_independent(kind);
         Self {
             scene,
             view,
+            estimator,
             whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
             vectorizer: Vectorizer::default(),
             slots: Vec::new(),
+            memory: E::Memory::default(),
             pending: Vec::new(),
             spare: Vec::new(),
             hits: Vec::new(),
             surfaces: SurfaceLanes::default(),
             shadows: ShadowQueue::default(),
+            splats: ShadowQueue::default(),
+            landed: Vec::new(),
             stats: RenderStats::default(),
         }
     }
@@ -75,13 +86,7 @@ impl<'a> Wave<'a> {
     }
 
     /// Renders the samples `samples` of the pixels `rect` of a tile.
-    pub fn render<E: Estimator>(
-        &mut self,
-        estimator: &E,
-        tile: &Mutex<TileSums>,
-        rect: PixelRect,
-        samples: Range<u32>,
-    ) {
+    pub fn render(&mut self, tile: &Mutex<TileSums>, rect: PixelRect, samples: Range<u32>) {
         let traced = self.traced_rect(rect);
         let at_once = if self.whole_tiles {
             1
@@ -89,13 +94,23 @@ impl<'a> Wave<'a> {
             (u64::from(WAVE_LANES) / traced.area()).max(1) as u32
         };
         for first in samples.clone().step_by(at_once as usize) {
-            self.generate(rect, traced, first..(first + at_once).min(samples.end));
-            while let Some(batch) = self.pending.pop() {
-                self.trace(&batch);
-                self.shade(estimator, &batch);
-                self.spare.push(batch);
+            let camera_rays = self.generate(rect, traced, first..(first + at_once).min(samples.end));
+            if E::LIGHT_PATHS {
+                self.emit();
+                self.finish_pending();
             }
+            self.pending.push(camera_rays);
+            self.finish_pending();
             self.retire(tile);
+        }
+    }
+
+    /// Takes all paths to their ends.
+    fn finish_pending(&mut self) {
+        while let Some(batch) = self.pending.pop() {
+            self.trace(&batch);
+            self.shade(&batch);
+            self.spare.push(batch);
         }
     }
 
@@ -112,11 +127,10 @@ impl<'a> Wave<'a> {
     }
 
     /// Makes slots, and the batch of camera rays.
-    fn generate(&mut self, rect: PixelRect, traced: PixelRect, samples: Range<u32>) {
+    fn generate(&mut self, rect: PixelRect, traced: PixelRect, samples: Range<u32>) -> Batch<E::State> {
         self.slots.clear();
         let mut batch = self.spare.pop().unwrap_or_default();
-        batch.clear();
-        batch.depth = 0;
+        batch.restart(TransportMode::Radiance, 0);
         for sample in samples {
             for y in (traced.y0..traced.y1).step_by(BLOCK[1] as usize) {
                 for x in (traced.x0..traced.x1).step_by(BLOCK[0] as usize) {
@@ -124,10 +138,17 @@ impl<'a> Wave<'a> {
                 }
             }
         }
-        self.pending.push(batch);
+        batch
     }
 
-    fn generate_block(&mut self, batch: &mut Batch, rect: PixelRect, traced: PixelRect, corner: [u32; 2], sample: u32) {
+    fn generate_block(
+        &mut self,
+        batch: &mut Batch<E::State>,
+        rect: PixelRect,
+        traced: PixelRect,
+        corner: [u32; 2],
+        sample: u32,
+    ) {
         let pixels: [[u32; 2]; LANES] =
             std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
         let streams = pixels.map(|[x, y]| {
@@ -137,16 +158,16 @@ impl<'a> Wave<'a> {
         let film = SampleStream::draw4_lanes(self.vectorizer, &streams, FILM_GROUP);
         let detector = SampleStream::draw4_lanes(self.vectorizer, &streams, DETECTOR_GROUP);
         for (i, &[x, y]) in pixels.iter().enumerate() {
+            let mut ray = Ray::INACTIVE;
             let mut lane = Lane {
-                slot: Lane::NO_SLOT,
+                slot: NO_SLOT,
                 split: false,
                 stream: streams[i],
                 beta: SampledSpectrum::ONE,
                 eta_scale: 1.0,
-                origin: Origin::Delta,
                 cone: RayCone::default(),
+                state: self.estimator.camera_state(self.view, &ray),
             };
-            let mut ray = Ray::INACTIVE;
             if traced.contains(x, y) {
                 let of = |group: &[[f32; LANES]; 4]| group.map(|numbers| numbers[i]);
                 let (mut slot, camera_ray, cone) =
@@ -154,6 +175,7 @@ impl<'a> Wave<'a> {
                 lane.cone = cone;
                 if camera_ray.is_valid() {
                     ray = camera_ray;
+                    lane.state = self.estimator.camera_state(self.view, &ray);
                     self.stats.camera_rays += 1;
                 } else {
                     slot.broken = true;
@@ -167,9 +189,44 @@ impl<'a> Wave<'a> {
         }
     }
 
+    /// Starts the light path of each slot.
+    fn emit(&mut self) {
+        let streams = self.slots.iter().map(|slot| {
+            let [x, y] = slot.pixel.map(u32::cast_signed);
+            self.view.sampler.start(x, y, slot.sample).branch(LIGHT_BRANCH)
+        });
+        let streams: Vec<_> = streams.collect();
+        let estimator = self.estimator;
+        let mut stage = self.stage(TransportMode::Importance, 0, 0);
+        for (slot, stream) in streams.into_iter().enumerate() {
+            estimator.emit(&mut stage, slot as u32, stream);
+        }
+        stage.finish_batch();
+    }
+
+    /// The stage of paths after `depth` scattering events, which collects those that will have had `next` of them.
+    fn stage(&mut self, mode: TransportMode, depth: u32, next: u32) -> Stage<'_, 's, E> {
+        let mut stage = Stage {
+            scene: self.scene,
+            view: self.view,
+            mode,
+            depth,
+            slots: &mut self.slots,
+            memory: &mut self.memory,
+            shadows: &mut self.shadows,
+            splats: &mut self.splats,
+            landed: &mut self.landed,
+            pending: &mut self.pending,
+            spare: &mut self.spare,
+            next: Batch::default(),
+        };
+        stage.start_batch(next);
+        stage
+    }
+
     /// Finds what the ray of each lane hits.
-    fn trace(&mut self, batch: &Batch) {
-        let kind = if batch.depth == 0 {
+    fn trace(&mut self, batch: &Batch<E::State>) {
+        let kind = if batch.depth == 0 && batch.mode == TransportMode::Radiance {
             RayKind::Camera
         } else {
             RayKind::Bounce
@@ -187,24 +244,18 @@ impl<'a> Wave<'a> {
     }
 
     /// Shades each lane, collects those that go on, and brings home what lights send.
-    fn shade<E: Estimator>(&mut self, estimator: &E, batch: &Batch) {
-        let mut stage = Stage {
-            scene: self.scene,
-            depth: batch.depth,
-            slots: &mut self.slots,
-            shadows: &mut self.shadows,
-            pending: &mut self.pending,
-            spare: &mut self.spare,
-            next: Batch::default(),
-        };
-        stage.start_batch();
-        let packets = batch.rays.packets().iter().zip(&self.hits);
+    fn shade(&mut self, batch: &Batch<E::State>) {
+        let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
+        let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
+        let mut surfaces = std::mem::take(&mut self.surfaces);
+        let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
+        let packets = batch.rays.packets().iter().zip(&hits);
         for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
-            self.surfaces.fill(self.scene.world(), rays, hits);
+            surfaces.fill(scene.world(), rays, hits);
             let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
-            let numbers = EventLanes::draw(self.vectorizer, &streams, batch.depth);
+            let numbers = EventLanes::draw(vectorizer, &streams, batch.depth);
             for (i, lane) in mates.iter().enumerate() {
-                if lane.slot == Lane::NO_SLOT || !rays.is_active(i) {
+                if lane.slot == NO_SLOT || !rays.is_active(i) {
                     continue;
                 }
                 let ray = &rays.get(i);
@@ -223,8 +274,8 @@ impl<'a> Wave<'a> {
                     );
                     continue;
                 };
-                let behind = self.scene.interaction_behind(ray, hit, hits.t[i]);
-                let mut si = behind.unwrap_or_else(|| self.surfaces.get(self.scene.world(), i, ray, hit));
+                let behind = scene.interaction_behind(ray, hit, hits.t[i]);
+                let mut si = behind.unwrap_or_else(|| surfaces.get(scene.world(), i, ray, hit));
                 let cone = lane.cone.after(si.p.distance(ray.origin));
                 si.footprint = cone.width;
                 let surface = Some(&si);
@@ -239,10 +290,11 @@ impl<'a> Wave<'a> {
                     },
                 );
             }
-            stage.limit_shadows(&mut self.stats);
+            stage.limit_shadows(&mut stats);
         }
         stage.finish_batch();
-        stage.flush_shadows(&mut self.stats);
+        stage.flush_shadows(&mut stats);
+        (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
     }
 
     /// Turns slots into sensor values.

@@ -49,6 +49,17 @@ pub enum Coordinates {
     Sphere(DMat3),
 }
 
+impl Coordinates {
+    /// The longer side of what the surface shows of an image of `size`, in pixels.
+    fn extent_in(&self, size: [usize; 2]) -> f32 {
+        let size = Vec2::new(size[0] as f32, size[1] as f32);
+        match self {
+            Self::Corners([p, q, r]) => ((p.max(*q).max(*r) - p.min(*q).min(*r)) * size).max_element(),
+            Self::Sphere(_) => size.max_element(),
+        }
+    }
+}
+
 impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
@@ -279,36 +290,39 @@ impl AreaLight {
         sphere_uv((object_from_world * in_world).normalize())
     }
 
-    /// With its luminance on average over the surface.
+    /// With its luminance on average over the surface: by some points for each pixel of an image that it shows, within reason.
     fn measured(self) -> Self {
-        /// Points are squared.
-        const STEPS: usize = 32;
         /// What it has at least of what it would have if it were as bright everywhere: the points may miss what there is.
         const LEAST: f32 = 1e-3;
         let whole = match &self.radiance {
             Radiance::Constant(radiance) => radiance.photometric_luminance(),
             Radiance::Image(image, scale) => image.mean_luminance() * scale,
         };
-        if self.coordinates.is_none() {
+        let Some(coordinates) = self.coordinates.as_deref() else {
             return Self {
                 luminance: whole * self.alpha_at(Vec3::ZERO, Vec3::Z, Vec2::ZERO),
                 ..self
             };
-        }
+        };
+        let shown = match &self.radiance {
+            Radiance::Constant(_) => 0.0,
+            Radiance::Image(image, _) => coordinates.extent_in(image.size()),
+        };
+        let steps = (2.0 * shown).clamp(32.0, 512.0) as usize;
         let (mut sum, mut area) = (0.0, 0.0);
-        for i in 0..STEPS * STEPS {
-            let u = (Vec2::new((i % STEPS) as f32, (i / STEPS) as f32) + 0.5) / STEPS as f32;
+        for i in 0..steps * steps {
+            let u = (Vec2::new((i % steps) as f32, (i / steps) as f32) + 0.5) / steps as f32;
             let sample = self.emitter.sample_area(u);
             let uv = self.uv(sample.at, 0.0);
             let luminance = match &self.radiance {
                 Radiance::Constant(_) => whole,
                 Radiance::Image(image, scale) => image.luminance_bilinear(uv) * scale,
             };
-            sum += luminance * self.alpha_at(sample.p, sample.ng, uv) / sample.pdf.0;
-            area += 1.0 / sample.pdf.0;
+            sum += f64::from(luminance * self.alpha_at(sample.p, sample.ng, uv) / sample.pdf.0);
+            area += f64::from(1.0 / sample.pdf.0);
         }
         Self {
-            luminance: (sum / area).max(LEAST * whole),
+            luminance: ((sum / area) as f32).max(LEAST * whole),
             ..self
         }
     }

@@ -130,12 +130,12 @@ impl PortalEnvironment {
                 let w = Vec3::new(angles.x.tan(), angles.y.tan(), 1.0).normalize();
                 let value = luminance(x, y) * solid_angle(w);
                 values.push(value);
-                powers.push(value * w.z);
+                powers.push(luminance(x, y) * projected_solid_angle([x, y], size) as f32);
             }
         }
         let power: f64 = powers.iter().map(|&power| f64::from(power)).sum();
         Self {
-            power: (power / (size[0] * size[1]) as f64) as f32 * portal.area,
+            power: power as f32 * portal.area,
             emission: CellDistribution::new(&powers, size[0]),
             distribution: WindowedDistribution::new(values, size[0]),
             portal,
@@ -251,6 +251,18 @@ impl PortalEnvironment {
     pub(super) fn power(&self) -> f32 {
         self.power
     }
+}
+
+/// The integral of the cosine to the portal's normal over the directions of a pixel. With x and y the tangents of the angles it is
+/// that of 1 / (1 + x² + y²)², whose antiderivative is the form factor of a rectangle.
+fn projected_solid_angle([x, y]: [usize; 2], size: [usize; 2]) -> f64 {
+    let angle = |i: usize, count: usize| (i as f64 / count as f64 - 0.5) * std::f64::consts::PI;
+    let corner = |i: usize, k: usize| {
+        let (sin_a, cos_a) = angle(i, size[0]).sin_cos();
+        let (sin_b, cos_b) = angle(k, size[1]).sin_cos();
+        0.5 * (sin_a * (sin_b * cos_a).atan2(cos_b) + sin_b * (sin_a * cos_b).atan2(cos_a))
+    };
+    corner(x + 1, y + 1) - corner(x, y + 1) - corner(x + 1, y) + corner(x, y)
 }
 
 fn center(x: usize, y: usize, size: [usize; 2]) -> Vec2 {

@@ -13,8 +13,11 @@ use crate::spectrum::{CompiledSpectrum, Wavelengths};
 pub struct SpotLight {
     place: Place,
     intensity: CompiledSpectrum,
-    cos_start: f32,
-    cos_end: f32,
+    start: f32,
+    end: f32,
+    /// 1 - cos of both angles: of narrow cones the cosines themselves say little.
+    rise_start: f32,
+    rise_end: f32,
 }
 
 impl SpotLight {
@@ -23,50 +26,56 @@ impl SpotLight {
         Self {
             place,
             intensity,
-            cos_start: start.cos(),
-            cos_end: end.cos(),
+            start,
+            end,
+            rise_start: rise(start),
+            rise_end: rise(end),
         }
     }
 
     /// The power of a spotlight of intensity 1, by the same angles.
     pub fn geometric_power(start: f32, end: f32) -> f32 {
-        cone_power(start.cos(), end.cos())
+        cone_power(rise(start), rise(end))
     }
 
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {
-            let cos = pose.local_direction(w).z;
-            self.intensity.sample(lambda) * smooth_step(cos, self.cos_end, self.cos_start)
+            self.intensity.sample(lambda) * self.profile(pose.local_direction(w))
         })
+    }
+
+    /// How much of the full intensity goes in a direction of the light's space.
+    fn profile(&self, w: Vec3) -> f32 {
+        let rise = if w.z > 0.0 {
+            (w.x * w.x + w.y * w.y) / (1.0 + w.z)
+        } else {
+            1.0 - w.z
+        };
+        1.0 - smooth_step(rise, self.rise_start, self.rise_end)
     }
 
     /// By intensity.
     pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
         let pose = self.place.at(time);
-        let one_minus_cos = self.sample_profile(u.x);
-        let sin = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+        let rise = self.sample_rise(u.x);
+        let sin = (rise * (2.0 - rise)).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
-        let w = pose.world_direction(Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - one_minus_cos));
-        let factor = smooth_step(pose.local_direction(w).z, self.cos_end, self.cos_start);
-        EmissionSample::from_point(
-            pose.position,
-            w,
-            self.intensity.sample(lambda) * factor,
-            self.pdf_le(w, time),
-        )
+        let w = pose.world_direction(Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - rise));
+        let intensity = self.intensity.sample(lambda) * self.profile(pose.local_direction(w));
+        EmissionSample::from_point(pose.position, w, intensity, self.pdf_le(w, time))
     }
 
     /// Density of a direction of [`Self::sample_le`].
     pub(super) fn pdf_le(&self, w: Vec3, time: f32) -> SolidAnglePdf {
         let pose = self.place.at(time);
-        let factor = smooth_step(pose.local_direction(w).z, self.cos_end, self.cos_start);
-        SolidAnglePdf(factor / cone_power(self.cos_start, self.cos_end) * pose.stretch(w))
+        let pdf = self.profile(pose.local_direction(w)) / cone_power(self.rise_start, self.rise_end);
+        SolidAnglePdf(pdf * pose.stretch(w))
     }
 
-    /// 1 - cos of an angle from +z with a density, by that, in proportion to the intensity.
-    fn sample_profile(&self, u: f32) -> f32 {
-        let (full, step) = (1.0 - self.cos_start, self.cos_start - self.cos_end);
+    /// 1 - cos of an angle from +z whose density by solid angle is in proportion to the intensity.
+    fn sample_rise(&self, u: f32) -> f32 {
+        let (full, step) = (self.rise_start, self.rise_end - self.rise_start);
         let at = u * (full + 0.5 * step);
         if at < full {
             return at;
@@ -82,26 +91,31 @@ impl SpotLight {
         }
         LightBounds {
             axis: self.place.at(0.0).axis(),
-            cos_normals: self.cos_start,
-            cos_emission: (self.cos_end.acos() - self.cos_start.acos()).cos(),
+            cos_normals: self.start.cos(),
+            cos_emission: (self.end - self.start).cos(),
             ..all_around
         }
     }
 
     pub(super) fn power(&self) -> f32 {
-        cone_power(self.cos_start, self.cos_end) * self.intensity.photometric_luminance()
+        cone_power(self.rise_start, self.rise_end) * self.intensity.photometric_luminance()
     }
 }
 
+/// 1 - cos.
+fn rise(angle: f32) -> f32 {
+    2.0 * (0.5 * angle).sin().powi(2)
+}
+
 /// The smooth step is 1/2 on average over the cosine.
-fn cone_power(cos_start: f32, cos_end: f32) -> f32 {
-    TAU * ((1.0 - cos_start) + 0.5 * (cos_start - cos_end))
+fn cone_power(rise_start: f32, rise_end: f32) -> f32 {
+    TAU * 0.5 * (rise_start + rise_end)
 }
 
 /// 0 below `low`, 1 above `high`, a cubic between them.
 fn smooth_step(x: f32, low: f32, high: f32) -> f32 {
     if low >= high {
-        return if x < low { 0.0 } else { 1.0 };
+        return if x <= low { 0.0 } else { 1.0 };
     }
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::common::render::Judge;
+use super::common::{effort, full_tier};
 use super::{check, grey, mean_along, options, quad};
 
 /// An emitter of radiance 1 on both sides.
@@ -32,8 +33,16 @@ fn covered(window: [f64; 4], x: [f64; 2], y: [f64; 2]) -> Vec<f64> {
     grey((0..64).map(|i| overlap(pixel(i % 8, left, right), x) * overlap(pixel(i / 8, top, bottom), y)))
 }
 
-/// Edges leave pixels that are partly covered: a block is a pixel, and an eighth of one is noticed.
-const EDGES: Judge = Judge { power: (0.13, 0.005) };
+/// Edges leave pixels that are partly covered: a block is a pixel, and an eighth of one is noticed; a twentieth in the full tier.
+fn edges() -> Judge {
+    let block = if full_tier() { 0.05 } else { 0.13 };
+    Judge { power: (block, 0.005) }
+}
+
+/// Samples a pixel, so many in the usual tier.
+fn spp(usual: u32) -> u32 {
+    usual * effort(4) as u32
+}
 
 #[test]
 fn a_perspective_camera_sees_what_its_angle_says() {
@@ -53,7 +62,7 @@ fn a_perspective_camera_sees_what_its_angle_says() {
         ),
     ] {
         let text = format!("Camera \"perspective\" {camera}\n{}WorldBegin\n{lamp}", options(0));
-        check(camera, &text, 1024, [1, 1], &EDGES, |_| covered(window, x, y));
+        check(camera, &text, spp(1024), [1, 1], &edges(), |_| covered(window, x, y));
     }
     // From the other side, x runs the other way.
     let text = format!(
@@ -61,7 +70,9 @@ fn a_perspective_camera_sees_what_its_angle_says() {
         options(0)
     );
     let window = [side, -side, -side, side];
-    check("from behind", &text, 1024, [1, 1], &EDGES, |_| covered(window, x, y));
+    check("from behind", &text, spp(1024), [1, 1], &edges(), |_| {
+        covered(window, x, y)
+    });
 }
 
 #[test]
@@ -72,7 +83,7 @@ fn an_orthographic_camera_sees_its_screen_window() {
         ("\"float screenwindow\" [-1 2.2 -2 2]", [-1.0, 2.2, -2.0, 2.0]),
     ] {
         let text = format!("Camera \"orthographic\" {camera}\n{}WorldBegin\n{lamp}", options(0));
-        check(camera, &text, 1024, [1, 1], &EDGES, |_| {
+        check(camera, &text, spp(1024), [1, 1], &edges(), |_| {
             covered(window, [0.3, 1.5], [-1.0, 1.65])
         });
     }
@@ -89,9 +100,14 @@ fn rays_start_on_the_near_plane() {
             options(0)
         );
         let expected = grey((0..64).map(|i| if i % 8 < 4 { 1.0 } else { right }));
-        check(&format!("near plane at {near}"), &text, 256, [1, 1], &EDGES, |_| {
-            expected.clone()
-        });
+        check(
+            &format!("near plane at {near}"),
+            &text,
+            spp(256),
+            [1, 1],
+            &edges(),
+            |_| expected.clone(),
+        );
     }
 }
 
@@ -117,15 +133,20 @@ fn a_lens_blurs_what_is_out_of_focus() {
             options(0)
         );
         let name = format!("lens of {radius} focused at {focus}");
-        check(&name, &text, 512, [1, 8], &EDGES, |_| expected.clone());
+        check(&name, &text, spp(512), [1, 8], &edges(), |_| expected.clone());
         // Parallel rays: the same circle of confusion.
         let text = format!(
             "Camera \"orthographic\" \"float screenwindow\" [-{Z} {Z} -{Z} {Z}] \"float lensradius\" {radius}\n\
              \"float focaldistance\" {focus}\n{}WorldBegin\n{lamp}",
             options(0)
         );
-        check(&format!("orthographic {name}"), &text, 512, [1, 8], &EDGES, |_| {
-            expected.clone()
-        });
+        check(
+            &format!("orthographic {name}"),
+            &text,
+            spp(512),
+            [1, 8],
+            &edges(),
+            |_| expected.clone(),
+        );
     }
 }

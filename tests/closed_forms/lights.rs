@@ -1,22 +1,16 @@
 //! Irradiance of spotlights, projected and goniometric images, skies, portals, textured and moving lights.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
 use glam::DVec3;
-use lucerna::image_io::{Image, PendingOutput, Window};
 
+use super::common::write_image;
 use super::irradiance::{check_irradiance, check_with, polygon_irradiance};
 use super::{options, quad};
 
 /// A file with a grey picture, in columns and rows from the top; its path.
-fn grey_image(name: &str, [width, height]: [usize; 2], value: impl Fn(usize, usize) -> f32) -> String {
-    let window = Window::of_size(width as i32, height as i32);
-    let pixels = (0..width * height).flat_map(|i| [value(i % width, i / width); 3]);
-    let image = Image::rgb(window, window, pixels.collect()).expect("an image");
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}.exr", std::process::id()));
-    let written = PendingOutput::create(&path).and_then(|output| output.commit(&image, None, 0.0));
-    written.expect("a writable directory").path.display().to_string()
+fn grey_image(name: &str, size: [usize; 2], value: impl Fn(usize, usize) -> f32) -> String {
+    write_image(name, size, |x, y| [value(x, y); 3])
 }
 
 fn irradiance_of_point(p: DVec3, at: DVec3) -> f64 {

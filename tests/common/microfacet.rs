@@ -70,7 +70,7 @@ impl Slopes {
     /// f cos dw = share D(m) (wo . m) G2 / cos_o dm, and D(m) cos_m dm is uniform in azimuth and in s = 1 / (1 + r²) of the slope
     /// (ax r cos phi, ay r sin phi); in s = exp(-r²) for Beckmann's.
     fn integrate(self, wo: DVec3, carried: impl Fn(DVec3, f64) -> (DVec3, f64)) -> f64 {
-        const STEPS: (usize, usize) = (256, 256);
+        const STEPS: (usize, usize) = (512, 256);
         let mut sum = 0.0;
         for i in 0..STEPS.0 {
             // The square concentrates steps where s nears 1: at grazing facets.

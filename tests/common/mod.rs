@@ -7,6 +7,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of this module")]
 
 pub mod chi2;
+pub mod covering;
 pub mod grooves;
 pub mod means;
 pub mod microfacet;
@@ -69,4 +70,14 @@ pub fn picture_of_difference(name: &str, ours: &[f32], reference: &reference::Re
 /// The level of each of `tests` independent tests that together have the level `significance` (Sidak 1967).
 pub fn sidak(significance: f64, tests: usize) -> f64 {
     -((-significance).ln_1p() / tests as f64).exp_m1()
+}
+
+/// Writes a picture under the target directory, by columns and rows from the top; its path.
+pub fn write_image(name: &str, [width, height]: [usize; 2], value: impl Fn(usize, usize) -> [f32; 3]) -> String {
+    let window = Window::of_size(width as i32, height as i32);
+    let pixels = (0..width * height).flat_map(|i| value(i % width, i / width));
+    let image = Image::rgb(window, window, pixels.collect()).expect("an image");
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}.exr", std::process::id()));
+    let written = PendingOutput::create(&path).and_then(|output| output.commit(&image, None, 0.0));
+    written.expect("a writable directory").path.display().to_string()
 }

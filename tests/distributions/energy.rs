@@ -1,103 +1,30 @@
-//! What surfaces keep of light: white ones all of it, none more than there is. Lobes whose values are estimates by random walks:
-//! their samples agree with their values, and the same directions give the same value.
+//! No surface gives back more light than came. Lobes whose values are estimates by random walks: their samples agree with their
+//! values, and the same directions give the same value.
 
 use glam::{DVec3, Vec3};
-use lucerna::material::Distribution::{self, Beckmann, Ggx};
 use lucerna::material::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Microfacets, OrenNayar,
-    ThinDielectric, TransportMode,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, Interlayer, Layered, Lobe, Microfacets, ThinDielectric, TransportMode,
 };
 use lucerna::math::Frame;
 use lucerna::spectrum::SampledSpectrum;
 
-use super::common::effort;
 use super::common::means::{FEWEST_RUNS, Means};
 use super::common::microfacet::direction;
 use super::common::random::Random;
+use super::common::{effort, full_tier};
 use super::first_two;
-use super::kinds::{DIRECTIONS, KINDS, integral};
+use super::furnace::whites;
+use super::kinds::{DIRECTIONS, KINDS};
 
-const MODE: TransportMode = TransportMode::Importance;
+pub const MODE: TransportMode = TransportMode::Importance;
 
-fn upright(lobe: Lobe<'static>) -> Bsdf<'static> {
+pub fn upright(lobe: Lobe<'static>) -> Bsdf<'static> {
     Bsdf::new(Frame::from_normal_tangent(Vec3::Z, Vec3::X), lobe)
 }
 
-/// A lobe, and one that draws directions with a density that is known, like its own.
-struct White {
-    name: String,
-    lobe: Lobe<'static>,
-    proposal: Lobe<'static>,
-}
-
 /// Facets of index 0 + i reflect everything.
-fn mirror(facets: Option<Microfacets>) -> Conductor {
+pub fn mirror(facets: Option<Microfacets>) -> Conductor {
     Conductor::new(SampledSpectrum::ZERO, SampledSpectrum::ONE, facets)
-}
-
-fn white_metals(distribution: Distribution) -> impl Iterator<Item = White> {
-    [(0.1, 0.1), (0.35, 0.35), (0.7, 0.7), (1.0, 1.0), (0.2, 0.8)]
-        .into_iter()
-        .map(move |(x, y)| {
-            let lobe = mirror(Microfacets::new(distribution, x, y));
-            White {
-                name: format!("metal {distribution:?} {x} {y}"),
-                lobe: Lobe::Conductor(lobe.with_multiple_scattering(true)),
-                proposal: Lobe::Conductor(lobe),
-            }
-        })
-}
-
-fn white_glasses(distribution: Distribution) -> impl Iterator<Item = White> {
-    let cases = [
-        (1.5, 0.1, 0.1),
-        (1.5, 0.5, 0.5),
-        (1.5, 1.0, 1.0),
-        (0.7, 0.6, 0.6),
-        (2.4, 0.3, 0.9),
-    ];
-    cases.into_iter().map(move |(eta, x, y)| {
-        let lobe = Dielectric::new(eta, Microfacets::new(distribution, x, y));
-        White {
-            name: format!("glass {distribution:?} {eta} {x} {y}"),
-            lobe: Lobe::Dielectric(lobe.with_multiple_scattering(true)),
-            proposal: Lobe::Dielectric(lobe),
-        }
-    })
-}
-
-fn whites() -> Vec<White> {
-    let white = SampledSpectrum::ONE;
-    let mut all: Vec<White> = [0.0, 0.2, 0.6, 1.0]
-        .into_iter()
-        .map(|roughness| White {
-            name: format!("grooves {roughness}"),
-            lobe: Lobe::OrenNayar(OrenNayar::new(white, roughness)),
-            proposal: Lobe::Diffuse(Diffuse::new(white)),
-        })
-        .collect();
-    let paper = DiffuseTransmission::new(white * 0.3, white * 0.7);
-    all.push(White {
-        name: "paper".to_owned(),
-        lobe: Lobe::DiffuseTransmission(paper),
-        proposal: Lobe::DiffuseTransmission(paper),
-    });
-    for distribution in [Ggx, Beckmann] {
-        all.extend(white_metals(distribution));
-        all.extend(white_glasses(distribution));
-    }
-    all
-}
-
-/// The mean over `samples` of the weights of a BSDF's samples.
-fn sampled(bsdf: &Bsdf<'_>, wo: DVec3, seed: usize, samples: usize) -> f64 {
-    let mut random = Random::new(seed as u64);
-    let weights = (0..samples).map(|_| {
-        let u = random.unit4();
-        let sample = bsdf.sample_f(wo.as_vec3(), u[2], first_two(u), MODE);
-        sample.map_or(0.0, |s| f64::from(s.weight().0[0]))
-    });
-    weights.sum::<f64>() / samples as f64
 }
 
 /// The integral of f |cos|, by samples of a proposal or, one in four, of the whole sphere.
@@ -120,56 +47,6 @@ fn integrated(bsdf: &Bsdf<'_>, proposal: &Bsdf<'_>, wo: DVec3, seed: usize, samp
         f64::from(bsdf.f(wo, wi, MODE).0[0] * wi.z.abs() / density)
     });
     values.sum::<f64>() / samples as f64
-}
-
-/// Notices errors of `one` in one direction and of `all` in all of them. Compares what `share` of light is kept from each direction, in independently seeded runs, with all of it.
-fn furnace(
-    white: &White,
-    tests: usize,
-    (one, all): (f64, f64),
-    share: impl Fn(&Bsdf<'_>, &Bsdf<'_>, DVec3, usize) -> f64,
-) {
-    let means = Means {
-        significance: 0.01 / tests as f64,
-        slack: 1e-4,
-    };
-    let (bsdf, proposal) = (upright(white.lobe), upright(white.proposal));
-    let from = |seed, (theta, phi)| share(&bsdf, &proposal, direction(theta, phi), seed);
-    let runs: Vec<Vec<f64>> = (1..=FEWEST_RUNS)
-        .map(|seed| DIRECTIONS.map(|d| from(seed, d)).to_vec())
-        .collect();
-    let report = means.against_exact(&runs, &[1.0; DIRECTIONS.len()]);
-    report.assert_agrees(&white.name);
-    report.assert_power(&white.name, one, all);
-}
-
-/// White furnace, by samples: they carry all light, in every direction, whatever the roughness.
-#[test]
-fn samples_of_white_surfaces_keep_all_light() {
-    let whites = whites();
-    for white in &whites {
-        furnace(white, whites.len(), (0.03, 0.01), |bsdf, _, wo, seed| {
-            sampled(bsdf, wo, seed, 8192 * effort(8))
-        });
-    }
-}
-
-/// White furnace, by values: they integrate to 1.
-#[test]
-fn values_of_white_surfaces_integrate_to_one() {
-    let whites = whites();
-    for white in &whites {
-        if upright(white.lobe).is_estimate() {
-            furnace(white, whites.len(), (0.08, 0.025), |bsdf, proposal, wo, seed| {
-                integrated(bsdf, proposal, wo, seed, 16_384 * effort(8))
-            });
-            continue;
-        }
-        for (theta, phi) in DIRECTIONS {
-            let integral = integral(&upright(white.lobe), direction(theta, phi), MODE);
-            assert!((integral - 1.0).abs() < 1e-3, "{} from {theta}: {integral}", white.name);
-        }
-    }
 }
 
 fn layers() -> Vec<(String, Layered)> {
@@ -241,6 +118,8 @@ fn layers_agree_with_themselves_and_gain_no_energy() {
                 .collect();
             let report = means.against_runs(&rough, &integrals);
             report.assert_agrees(&name);
+            let noticed = if full_tier() { 0.04 } else { 0.15 };
+            report.assert_power(&name, noticed, noticed);
         }
     }
 }

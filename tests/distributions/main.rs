@@ -7,11 +7,14 @@ mod bsdfs;
 mod cameras;
 mod energy;
 mod environments;
+mod furnace;
 mod kinds;
 mod light_emission;
 mod light_samplers;
 mod lights;
 mod measured;
+mod narrow;
+mod textured;
 
 use glam::Vec2;
 

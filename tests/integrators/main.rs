@@ -4,7 +4,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod covering;
 mod faults;
 mod kajiya;
+mod lamps;
 mod path;
 mod stage;
+mod surfaces;

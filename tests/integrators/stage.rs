@@ -8,52 +8,10 @@ use lucerna::spectrum::ColorMode;
 use crate::common::means::{FEWEST_RUNS, Means};
 use crate::common::render::{Built, blocks, parse};
 use crate::common::sidak;
-
-/// Materials of the ball, by name.
-pub const MATERIALS: [(&str, &str); 14] = [
-    ("diffuse", r#""diffuse" "rgb reflectance" [0.7 0.5 0.3]"#),
-    (
-        "Oren-Nayar",
-        r#""diffuse" "rgb reflectance" [0.7 0.5 0.3] "float roughness" 0.8"#,
-    ),
-    (
-        "diffuse transmission",
-        r#""diffusetransmission" "rgb reflectance" [0.4 0.2 0.1] "rgb transmittance" [0.3 0.3 0.5]"#,
-    ),
-    ("mirror", r#""conductor" "rgb reflectance" [0.9 0.8 0.7]"#),
-    ("rough metal", r#""conductor" "float roughness" 0.3"#),
-    (
-        "anisotropic metal",
-        r#""conductor" "float uroughness" 0.5 "float vroughness" 0.15"#,
-    ),
-    ("glass", r#""dielectric" "float eta" 1.5"#),
-    ("rough glass", r#""dielectric" "float eta" 1.5 "float roughness" 0.25"#),
-    ("thin glass", r#""thindielectric" "float eta" 1.5"#),
-    (
-        "smooth coat",
-        r#""coateddiffuse" "rgb reflectance" [0.6 0.4 0.2] "float roughness" 0"#,
-    ),
-    (
-        "rough coat",
-        r#""coateddiffuse" "rgb reflectance" [0.6 0.4 0.2] "float roughness" 0.3"#,
-    ),
-    (
-        "coated metal",
-        r#""coatedconductor" "float conductor.roughness" 0.2 "float interface.roughness" 0.2"#,
-    ),
-    (
-        "metal of many bounces",
-        r#""conductor" "float roughness" 0.6 "bool multiplescattering" true"#,
-    ),
-    (
-        "principled",
-        r#""principled" "rgb base_color" [0.7 0.5 0.3] "float metallic" 0.3 "float roughness" 0.4 "float clearcoat" 0.8
-           "float spec_trans" 0.2"#,
-    ),
-];
+use crate::surfaces;
 
 /// Lights, by name. None is so small that directions drawn without knowing of it would hardly meet it.
-pub const LIGHTS: [(&str, &str); 8] = [
+const LIGHTS: [(&str, &str); 7] = [
     (
         "area",
         r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [2 2.2 2.4]
@@ -68,10 +26,6 @@ pub const LIGHTS: [(&str, &str); 8] = [
     (
         "point",
         r#"LightSource "point" "point3 from" [-1.5 3 -2] "rgb I" [9 8 7]"#,
-    ),
-    (
-        "spot",
-        r#"LightSource "spot" "point3 from" [-1.5 4 -2] "point3 to" [0 0 0] "float coneangle" 40 "rgb I" [16 15 14]"#,
     ),
     (
         "distant",
@@ -90,7 +44,13 @@ pub const LIGHTS: [(&str, &str); 8] = [
 ];
 
 /// A scene of a material and a light.
-pub fn scene(material: &str, light: &str) -> String {
+fn scene(material: &str, light: &str) -> String {
+    let light = LIGHTS
+        .iter()
+        .find(|(name, _)| *name == light)
+        .unwrap_or_else(|| panic!("there is no light `{light}`"))
+        .1;
+    let material = surfaces::material(material);
     format!(
         r#"LookAt 0 1.4 -5  0 0.7 0  0 1 0
         Camera "perspective" "float fov" 32
@@ -103,7 +63,7 @@ pub fn scene(material: &str, light: &str) -> String {
             Material "diffuse" "rgb reflectance" [0.5 0.55 0.6]
             Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 0 -3  -4 0 4  4 0 4  4 0 -3]
         AttributeEnd
-        Material {material}
+        {material}
         Translate 0 0.9 0
         Shape "sphere" "float radius" 0.9"#
     )
@@ -125,9 +85,9 @@ pub fn runs(built: &Built, integrator: Integrator, spp: u32, first_seed: u64) ->
     (first_seed..first_seed + FEWEST_RUNS as u64).map(run).collect()
 }
 
-/// The scene of a material and a light, built.
-pub fn build(material: &str, light: &str, backend: Backend, color: ColorMode) -> Built {
-    Built::new(parse(&scene(material, light)), backend, color)
+/// The scene of a material and a light, by their names, built.
+pub fn build(material: &str, light: &str) -> Built {
+    Built::new(parse(&scene(material, light)), Backend::default(), ColorMode::Rgb)
 }
 
 /// The integrator of a scene.
