@@ -49,6 +49,17 @@ pub enum Coordinates {
     Sphere(DMat3),
 }
 
+impl Coordinates {
+    /// The longer side of what the surface shows of an image of `size`, in pixels.
+    fn extent_in(&self, size: [usize; 2]) -> f32 {
+        let size = Vec2::new(size[0] as f32, size[1] as f32);
+        match self {
+            Self::Corners([p, q, r]) => ((p.max(*q).max(*r) - p.min(*q).min(*r)) * size).max_element(),
+            Self::Sphere(_) => size.max_element(),
+        }
+    }
+}
+
 impl AreaLight {
     /// With `radiance` in W·m⁻²·sr⁻¹·nm⁻¹. `None` if the shape has no area.
     pub fn new(shape: EmitterShape, radiance: CompiledSpectrum, two_sided: bool) -> Option<Self> {
@@ -279,7 +290,7 @@ impl AreaLight {
         sphere_uv((object_from_world * in_world).normalize())
     }
 
-    /// With its luminance on average over the surface.
+    /// With its luminance on average over the surface: by some points for each pixel of an image that it shows, within reason.
     fn measured(self) -> Self {
         /// What it has at least of what it would have if it were as bright everywhere: the points may miss what there is.
         const LEAST: f32 = 1e-3;
@@ -293,8 +304,12 @@ impl AreaLight {
                 ..self
             };
         };
-        let steps = self.steps_for(coordinates);
-        let (mut sum, mut area) = (0.0_f64, 0.0_f64);
+        let shown = match &self.radiance {
+            Radiance::Constant(_) => 0.0,
+            Radiance::Image(image, _) => coordinates.extent_in(image.size()),
+        };
+        let steps = (2.0 * shown).clamp(32.0, 512.0) as usize;
+        let (mut sum, mut area) = (0.0, 0.0);
         for i in 0..steps * steps {
             let u = (Vec2::new((i % steps) as f32, (i / steps) as f32) + 0.5) / steps as f32;
             let sample = self.emitter.sample_area(u);
@@ -310,19 +325,6 @@ impl AreaLight {
             luminance: ((sum / area) as f32).max(LEAST * whole),
             ..self
         }
-    }
-
-    /// Points along each side of the square that a mean over the surface wants: some for each pixel that it shows, within reason.
-    fn steps_for(&self, coordinates: &Coordinates) -> usize {
-        let size = match &self.radiance {
-            Radiance::Constant(_) => Vec2::ONE,
-            Radiance::Image(image, _) => Vec2::from(image.size().map(|side| side as f32)),
-        };
-        let shown = match coordinates {
-            Coordinates::Corners([p, q, r]) => (p.max(*q).max(*r) - p.min(*q).min(*r)) * size,
-            Coordinates::Sphere(_) => size,
-        };
-        (2.0 * shown.max_element()).clamp(32.0, 512.0) as usize
     }
 
     pub(super) fn bounds(&self) -> LightBounds {

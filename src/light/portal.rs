@@ -130,7 +130,7 @@ impl PortalEnvironment {
                 let w = Vec3::new(angles.x.tan(), angles.y.tan(), 1.0).normalize();
                 let value = luminance(x, y) * solid_angle(w);
                 values.push(value);
-                powers.push((f64::from(luminance(x, y)) * projected_solid_angle([x, y], size)) as f32);
+                powers.push(luminance(x, y) * projected_solid_angle([x, y], size) as f32);
             }
         }
         let power: f64 = powers.iter().map(|&power| f64::from(power)).sum();

@@ -45,7 +45,7 @@ impl SpotLight {
         })
     }
 
-    /// The share of the full intensity that there is in the local direction `w`.
+    /// How much of the full intensity goes in a direction of the light's space.
     fn profile(&self, w: Vec3) -> f32 {
         let rise = if w.z > 0.0 {
             (w.x * w.x + w.y * w.y) / (1.0 + w.z)
@@ -58,28 +58,23 @@ impl SpotLight {
     /// By intensity.
     pub(super) fn sample_le(&self, time: f32, u: Vec2, lambda: &Wavelengths) -> Option<EmissionSample> {
         let pose = self.place.at(time);
-        let one_minus_cos = self.sample_profile(u.x);
-        let sin = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+        let rise = self.sample_rise(u.x);
+        let sin = (rise * (2.0 - rise)).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
-        let w = pose.world_direction(Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - one_minus_cos));
-        let factor = self.profile(pose.local_direction(w));
-        EmissionSample::from_point(
-            pose.position,
-            w,
-            self.intensity.sample(lambda) * factor,
-            self.pdf_le(w, time),
-        )
+        let w = pose.world_direction(Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - rise));
+        let intensity = self.intensity.sample(lambda) * self.profile(pose.local_direction(w));
+        EmissionSample::from_point(pose.position, w, intensity, self.pdf_le(w, time))
     }
 
     /// Density of a direction of [`Self::sample_le`].
     pub(super) fn pdf_le(&self, w: Vec3, time: f32) -> SolidAnglePdf {
         let pose = self.place.at(time);
-        let factor = self.profile(pose.local_direction(w));
-        SolidAnglePdf(factor / cone_power(self.rise_start, self.rise_end) * pose.stretch(w))
+        let pdf = self.profile(pose.local_direction(w)) / cone_power(self.rise_start, self.rise_end);
+        SolidAnglePdf(pdf * pose.stretch(w))
     }
 
-    /// 1 - cos of an angle from +z with a density, by that, in proportion to the intensity.
-    fn sample_profile(&self, u: f32) -> f32 {
+    /// 1 - cos of an angle from +z whose density by solid angle is in proportion to the intensity.
+    fn sample_rise(&self, u: f32) -> f32 {
         let (full, step) = (self.rise_start, self.rise_end - self.rise_start);
         let at = u * (full + 0.5 * step);
         if at < full {
