@@ -1,6 +1,7 @@
 //! The layers of single strategies (s, t): together they are the picture, and each alone finds what all together find.
 
 use lucerna::accel::Backend;
+use lucerna::film::Film;
 use lucerna::integrator::{Pyramid, Silent, StrategyLayer};
 use lucerna::scene::ViewOverrides;
 use lucerna::spectrum::ColorMode;
@@ -24,7 +25,7 @@ fn render(built: &Built, edges: u32, spp: u32, seed: u64) -> (Vec<f32>, Vec<(Str
         .expect("strategies");
     let stats = integrator(built).render(&built.scene, &view, &film, &Silent);
     assert_eq!(stats.dropped_samples, 0, "dropped: {:?}", stats.dropped);
-    let pictures = film.layers().iter().map(|layer| layer.develop());
+    let pictures = film.layers().iter().map(Film::develop);
     (film.develop(), pyramid.layers().into_iter().zip(pictures).collect())
 }
 
