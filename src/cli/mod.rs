@@ -4,6 +4,7 @@ pub mod args;
 mod compare;
 mod info;
 mod list;
+mod memory;
 mod render;
 mod report;
 mod stats;

@@ -113,6 +113,7 @@ pub struct Film {
     /// Whether it has sums for splats.
     takes_splats: bool,
     light_paths: AtomicU64,
+    layers: Vec<Film>,
 }
 
 impl Film {
@@ -149,6 +150,7 @@ impl Film {
             tiles,
             takes_splats: false,
             light_paths: AtomicU64::new(0),
+            layers: Vec::new(),
         }
     }
 
@@ -160,6 +162,28 @@ impl Film {
         }
         self.takes_splats = true;
         self
+    }
+
+    /// The same film with others beside it, which take parts of its picture.
+    ///
+    /// # Panics
+    /// If they are not for the same pixels.
+    pub fn with_layers(mut self, layers: Vec<Self>) -> Self {
+        let same = |layer: &Self| layer.resolution == self.resolution && layer.crop == self.crop;
+        assert!(layers.iter().all(same), "a layer for other pixels");
+        self.layers = layers;
+        self
+    }
+
+    /// The films beside it; mostly none.
+    pub fn layers(&self) -> &[Self] {
+        &self.layers
+    }
+
+    /// Memory that a film takes for each pixel, in bytes.
+    pub fn bytes_per_pixel(takes_splats: bool) -> u64 {
+        let splats = if takes_splats { size_of::<[i128; 3]>() } else { 0 };
+        (size_of::<PixelSums>() + splats) as u64
     }
 
     /// Whether it has such sums.

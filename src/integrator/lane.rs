@@ -26,6 +26,14 @@ pub(super) struct Slot {
     pub broken: bool,
 }
 
+impl Slot {
+    /// Whether what it gathered counts: it is finite and nowhere negative.
+    #[inline]
+    pub fn is_good(&self) -> bool {
+        !self.broken && self.l.is_finite() && self.l.min_value() >= 0.0
+    }
+}
+
 /// A live path. `S` is what its estimator has to know of the way that it came.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lane<S> {

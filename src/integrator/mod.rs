@@ -29,7 +29,7 @@ mod wave;
 
 use std::time::{Duration, Instant};
 
-pub use bdpt::{BdptIntegrator, Strategies};
+pub use bdpt::{BdptIntegrator, Pyramid, Strategies, StrategyLayer};
 #[doc(hidden)]
 pub use fault::Fault;
 pub use kajiya::KajiyaIntegrator;
@@ -156,7 +156,15 @@ impl Integrator {
         }
     }
 
-    /// Renders all samples of `view` onto `film`, one of [`Integrator::film`], on the threads of the rayon pool that calls. The image
+    /// The same with a layer for each strategy (s, t) of `pyramid`. `None` if it has no strategies of that kind.
+    pub fn film_of_strategies(&self, view: &View, pyramid: Pyramid) -> Option<Film> {
+        match self {
+            Self::Bdpt(bdpt) => bdpt.film_of_strategies(view, pyramid),
+            Self::Path(_) | Self::Kajiya(_) => None,
+        }
+    }
+
+    /// Renders all samples of `view` onto `film`, one of [`Integrator::film`] or [`Integrator::film_of_strategies`], on the threads of the rayon pool that calls. The image
     /// does not depend on how many those are.
     pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
         let start = Instant::now();

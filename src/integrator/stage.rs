@@ -1,11 +1,14 @@
 //! What an estimator is given at the points that a batch's rays met, and what it may do there: add light, ask for light through
 //! shadow rays, and go on.
 
+use std::sync::Mutex;
+
 use super::RenderStats;
 use super::lane::{Batch, Lane, Slot};
 use super::numbers::EventNumbers;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution, shadow_ray};
 use super::wave::WAVE_LANES;
+use crate::film::{Film, TileSums};
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::light::LightSample;
 use crate::material::TransportMode;
@@ -26,6 +29,17 @@ pub(super) trait Estimator: Sync + Sized {
     /// What a camera path starts with.
     fn camera_state(&self, view: &View, ray: &Ray) -> Self::State;
 
+    /// What a wave starts with that renders to `film`.
+    fn memory<'s>(&self, film: &Film) -> Self::Memory<'s> {
+        let _ = film;
+        Default::default()
+    }
+
+    /// Takes to the layers of the film what a wave kept for them.
+    fn retire_layers(&self, memory: &mut Self::Memory<'_>, wave: &Retiring<'_>) {
+        let _ = (memory, wave);
+    }
+
     /// Starts the light path of a slot.
     fn emit<'s>(&self, stage: &mut Stage<'_, 's, Self>, slot: u32, stream: SampleStream) {
         let _ = (stage, slot, stream);
@@ -33,6 +47,16 @@ pub(super) trait Estimator: Sync + Sized {
 
     /// Takes a path to its next scattering event.
     fn shade<'s>(&self, stage: &mut Stage<'_, 's, Self>, vertex: Vertex<'_, Self::State>);
+}
+
+/// A wave whose paths have ended.
+pub(super) struct Retiring<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub film: &'a Film,
+    pub slots: &'a [Slot],
+    /// The tile of the film that has the pixels of the slots, or some of them.
+    pub tile: Option<&'a Mutex<TileSums>>,
 }
 
 /// Where a lane's ray ended.

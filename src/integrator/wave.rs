@@ -17,7 +17,7 @@ use super::lane::{Batch, Lane, NO_SLOT, Slot};
 use super::numbers::{DETECTOR_GROUP, EventLanes, FILM_GROUP, LIGHT_BRANCH};
 use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
-use super::stage::{Estimator, Stage, Vertex};
+use super::stage::{Estimator, Retiring, Stage, Vertex};
 use super::{DroppedSample, RenderStats};
 use crate::accel::RayKind;
 use crate::camera::CameraSample;
@@ -72,7 +72,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
             vectorizer: Vectorizer::default(),
             slots: Vec::new(),
-            memory: E::Memory::default(),
+            memory: estimator.memory(film),
             pending: Vec::new(),
             spare: Vec::new(),
             hits: Vec::new(),
@@ -313,6 +313,16 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// Turns slots into sensor values, and what light paths brought to the film into splats.
     fn retire(&mut self, tile: Option<&Mutex<TileSums>>) {
+        if !self.film.layers().is_empty() {
+            let wave = Retiring {
+                scene: self.scene,
+                view: self.view,
+                film: self.film,
+                slots: &self.slots,
+                tile,
+            };
+            self.estimator.retire_layers(&mut self.memory, &wave);
+        }
         if let Some(tile) = tile {
             self.retire_slots(&mut lock(tile));
         }
@@ -347,8 +357,9 @@ impl<'s, E: Estimator> Wave<'s, E> {
             if !rect.contains(x, y) {
                 continue;
             }
-            let good = !slot.broken && slot.l.is_finite() && slot.l.min_value() >= 0.0;
-            let rgb = good.then(|| self.view.sensor.to_rgb(slot.l * slot.importance, &slot.lambda));
+            let rgb = slot
+                .is_good()
+                .then(|| self.view.sensor.to_rgb(slot.l * slot.importance, &slot.lambda));
             if !sums.add(x, y, rgb, slot.filter_weight) {
                 self.stats.drop_sample(DroppedSample {
                     pixel: slot.pixel,

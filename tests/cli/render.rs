@@ -117,3 +117,36 @@ fn samplers_and_integrators_are_chosen_by_the_names_listed() {
         }
     }
 }
+
+#[test]
+fn strategies_are_layers_of_one_file_and_an_overview() {
+    let sandbox = Sandbox::new();
+    let run = |more: &[&str]| {
+        let usual = ["render", "ball.pbrt", "--integrator", "bdpt", "--quiet"];
+        sandbox.lucerna(&[&usual, more].concat())
+    };
+    run(&["-o", "plain.exr"]).expect(0);
+    run(&["--strategies", "out/of", "--strategies-depth", "2"]).expect(0);
+    let file = sandbox.path("out/of/ball-strategies.exr");
+    let header = &exr::meta::MetaData::read_from_file(&file, false)
+        .expect("a header")
+        .headers[0];
+    let names = header.channels.list.iter().map(|channel| channel.name.to_string());
+    let mut names: Vec<_> = names
+        .filter_map(|name| Some(name.strip_suffix('R')?.to_owned()))
+        .collect();
+    names.sort();
+    let strategies = ["s0.t2", "s0.t3", "s1.t2", "s2.t1"];
+    let mut expected = vec![String::new(), "longer.weighted.".to_owned()];
+    expected.extend(strategies.map(|name| format!("{name}.unweighted.")));
+    expected.extend(strategies.map(|name| format!("{name}.weighted.")));
+    expected.sort();
+    assert_eq!(names, expected);
+    // The picture itself is in it too, and is as it is without them.
+    let data = |path: &std::path::Path| read_exr(path).expect("a picture").0.data().to_vec();
+    assert_eq!(data(&file), data(&sandbox.path("plain.exr")));
+    assert_eq!(data(&sandbox.path("ball.exr")), data(&sandbox.path("plain.exr")));
+    // Three columns of s; two rows of lengths in full and two weighted, and one of longer paths.
+    let overview = read(&sandbox.path("out/of/ball-strategies.png")).expect("a picture");
+    assert_eq!([overview.width(), overview.height()], [3 * 27 + 3, 5 * 19 + 3]);
+}

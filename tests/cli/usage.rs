@@ -61,6 +61,39 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
         (&["render", "ball.pbrt", "--crop", "0,0,25,16"], "24x16"),
         (&["render", "ball.pbrt", "--sample", "4"], "there is no sample 4"),
         (&["render", "ball.txt"], ".pbrt"),
+        (
+            &["render", "ball.pbrt", "--strategies", "out"],
+            "--strategies is for the integrator `bdpt`: `path` has no strategies (s, t)",
+        ),
+        (
+            &[
+                "render",
+                "ball.pbrt",
+                "--integrator",
+                "lightpath",
+                "--strategies",
+                "out",
+            ],
+            "`lightpath` has no strategies",
+        ),
+        (
+            &["render", "ball.pbrt", "--strategies", "out", "--strategies-depth", "11"],
+            "11",
+        ),
+        (&["render", "ball.pbrt", "--strategies-depth", "3"], "--strategies"),
+        (
+            &[
+                "render",
+                "ball.pbrt",
+                "--integrator",
+                "bdpt",
+                "--strategies",
+                "out",
+                "--resolution",
+                "16384x16384",
+            ],
+            "GiB of memory, and there are",
+        ),
     ];
     for (arguments, text) in cases {
         sandbox.lucerna(arguments).expect(2).says(text);

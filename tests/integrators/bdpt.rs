@@ -11,7 +11,7 @@ use crate::common::render::{Built, combinations, parse};
 use crate::stage::{build, integrator, means, runs};
 
 /// A room with a lamp, a mirror and glass, seen through a filter that reaches far, with a lens.
-fn room(integrator: &str, lamp: &str) -> String {
+pub fn room(integrator: &str, lamp: &str) -> String {
     format!(
         r#"LookAt 0 1 -3.2  0 1 0  0 1 0
         Camera "perspective" "float fov" 50 "float lensradius" 0.02 "float focaldistance" 3.2
@@ -28,7 +28,7 @@ fn room(integrator: &str, lamp: &str) -> String {
     )
 }
 
-const PANEL: &str = r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [6 5 4]
+pub const PANEL: &str = r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [6 5 4]
     Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-0.4 1.99 -0.4  0.4 1.99 -0.4  0.4 1.99 0.4  -0.4 1.99 0.4] AttributeEnd"#;
 
 fn picture(built: &Built, overrides: &ViewOverrides, threads: usize) -> Vec<u32> {

@@ -11,4 +11,5 @@ mod kajiya;
 mod lamps;
 mod path;
 mod stage;
+mod strategies;
 mod surfaces;

@@ -44,6 +44,18 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME")]
     pub strategy: Option<StrategyArg>,
 
+    /// With the integrator `bdpt`: write what each strategy (s, t) found into this directory
+    ///
+    /// SCENE-strategies.exr has a layer for each, without its weight and with it (s2.t3.unweighted, s2.t3.weighted), and one for all
+    /// longer paths; SCENE-strategies.png shows them, in rows by path length and columns by s. It takes memory, which is checked first.
+    #[arg(long, value_name = "DIR")]
+    pub strategies: Option<PathBuf>,
+
+    /// The greatest number of edges of paths whose strategies are told apart
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "strategies",
+        value_parser = clap::value_parser!(u32).range(1..=10))]
+    pub strategies_depth: u32,
+
     /// Samples a pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,

@@ -2,6 +2,7 @@
 
 mod picture;
 mod prepare;
+mod strategies;
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};

@@ -23,14 +23,21 @@ impl Job<'_> {
         picture: Picture,
         start: Instant,
     ) -> Result<Statistics> {
-        let Picture { view, output } = picture;
+        let Picture {
+            view,
+            output,
+            strategies,
+        } = picture;
         let reporter = Reporter {
             channel: self.channel,
             scene: path,
             camera: &view.name,
         };
         let integrator = self.integrator(&prepared.desc)?;
-        let film = integrator.film(&view);
+        let film = strategies
+            .as_ref()
+            .and_then(|outputs| integrator.film_of_strategies(&view, outputs.pyramid))
+            .unwrap_or_else(|| integrator.film(&view));
         let progress = reporter.progress();
         let stats = self
             .pool
@@ -61,6 +68,9 @@ impl Job<'_> {
             (self.print_error)(reason);
             reporter.say(&format!("the picture is in {} instead", written.path.display()));
         }
+        if let Some(outputs) = strategies {
+            outputs.write(&film, &view, &metadata, self.args.exposure)?;
+        }
         report_dropped(&reporter, &stats, self.args.seed, path);
         let statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);
         reporter.result(&statistics);
@@ -71,7 +81,7 @@ impl Job<'_> {
     }
 
     /// The scene's integrator, as changed by the command line.
-    fn integrator(&self, desc: &SceneDesc) -> Result<Integrator> {
+    pub(super) fn integrator(&self, desc: &SceneDesc) -> Result<Integrator> {
         let mut integrator = Integrator::from_desc(&desc.integrator);
         if let Some(name) = &self.args.integrator {
             integrator = integrator.named(name);
@@ -141,14 +151,14 @@ fn chromaticities(space: ColorSpace) -> [[f32; 2]; 4] {
 }
 
 /// The pixels rendered.
-fn data_window(view: &View) -> Window {
+pub(super) fn data_window(view: &View) -> Window {
     let [x0, y0, x1, y1] =
         [view.crop.x0, view.crop.y0, view.crop.x1, view.crop.y1].map(|edge| i32::try_from(edge).unwrap_or(i32::MAX));
     Window { x0, y0, x1, y1 }
 }
 
 /// The whole picture.
-fn display_window(view: &View) -> Window {
+pub(super) fn display_window(view: &View) -> Window {
     let [width, height] = view.resolution.map(|size| i32::try_from(size).unwrap_or(i32::MAX));
     Window::of_size(width, height)
 }

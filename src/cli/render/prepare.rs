@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::Job;
+use super::strategies::StrategyOutputs;
 use crate::accel::BuildOptions;
 use crate::cli::report::Reporter;
 use crate::desc::{self, ParseOptions, SceneDesc};
@@ -18,10 +19,11 @@ pub(super) struct Prepared {
     pub(super) load_seconds: f64,
 }
 
-/// A view and its open output.
+/// A view and its open outputs.
 pub(super) struct Picture {
     pub(super) view: View,
     pub(super) output: PendingOutput,
+    pub(super) strategies: Option<StrategyOutputs>,
 }
 
 impl Job<'_> {
@@ -52,6 +54,7 @@ impl Job<'_> {
             let file = self.output_path(path, &view, desc.views.len())?;
             pictures.push(Picture {
                 output: PendingOutput::create(&file)?,
+                strategies: self.strategy_outputs(path, &desc, &view)?,
                 view,
             });
         }

@@ -5,7 +5,7 @@ use super::mis::{Exponent, LightStart, Partial};
 use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage};
 use crate::geometry::{Ray, SurfaceInteraction};
 use crate::integrator::fault::Fault;
-use crate::integrator::shadow::Contribution;
+use crate::integrator::shadow::{Contribution, shadow_ray};
 use crate::integrator::stage::Vertex;
 use crate::light::{EmissionDensity, Light, LightDensity, LightEnd, LightSample};
 use crate::material::TransportMode;
@@ -85,7 +85,11 @@ impl BdptIntegrator {
             let emission = chosen * f64::from(position.0) * f64::from(direction.0);
             self.weight_of_met_light(partial, direct, emission)
         };
-        slot.l += lane.beta * le * (weight as f32);
+        let l = lane.beta * le * (weight as f32);
+        slot.l += l;
+        if let Some(record) = &mut stage.memory.record {
+            record.add(lane.slot, [0, stage.depth + 2], l, weight as f32);
+        }
     }
 
     /// s = 0, of what is infinitely far away: "densities by area" there are by solid angle.
@@ -109,7 +113,11 @@ impl BdptIntegrator {
                 let emission = chosen * f64::from(position.0) * f64::from(direction.0);
                 self.weight_of_met_light(partial, direct, emission)
             };
-            slot.l += lane.beta * le * (weight as f32);
+            let l = lane.beta * le * (weight as f32);
+            slot.l += l;
+            if let Some(record) = &mut stage.memory.record {
+                record.add(lane.slot, [0, depth + 2], l, weight as f32);
+            }
         }
     }
 
@@ -155,18 +163,28 @@ impl BdptIntegrator {
         let w_camera = exponent.sum(event.partial, start.emission * cos / start.direct, reverse);
         let weight = Exponent::weight(w_light, w_camera) as f32;
         let factor = value.cos_theta * weight / (chosen.pmf * pdf);
-        stage.connect(lane, si, &sample, lane.beta * value.f * sample.li * factor);
+        let value = lane.beta * value.f * sample.li * factor;
+        if let Some(record) = &mut stage.memory.record {
+            let ray = shadow_ray(si, sample.wi, sample.end);
+            record.add_unless_occluded(stage.scene, &ray, lane.slot, [1, stage.depth + 2], value, weight);
+        }
+        stage.connect(lane, si, &sample, value);
         Some(())
     }
 
     /// s > 1, t > 1.
     fn connect_to_light_path(&self, stage: &mut SubpathStage<'_, '_>, event: &Event<'_, '_>) {
         let slot = event.lane.slot;
+        let mut record = stage.memory.record.take();
         for light in stage.memory.of(slot) {
             if !self.allows(stage.depth + light.depth + 2) {
                 continue;
             }
-            if let Some((ray, value)) = self.connection(event, light) {
+            if let Some((ray, value, weight)) = self.connection(event, light) {
+                if let Some(record) = &mut record {
+                    let strategy = [light.depth + 2, stage.depth + 2];
+                    record.add_unless_occluded(stage.scene, &ray, slot, strategy, value, weight);
+                }
                 if ray.is_valid() {
                     stage.shadows.push(&ray, Contribution { slot, value });
                 } else {
@@ -174,10 +192,11 @@ impl BdptIntegrator {
                 }
             }
         }
+        stage.memory.record = record;
     }
 
-    /// What a vertex of a light subpath brings, and the ray that must be free.
-    fn connection(&self, event: &Event<'_, '_>, light: &LightVertex<'_>) -> Option<(Ray, SampledSpectrum)> {
+    /// The ray that must be free, what a vertex of a light subpath brings, weighted, and the weight.
+    fn connection(&self, event: &Event<'_, '_>, light: &LightVertex<'_>) -> Option<(Ray, SampledSpectrum, f32)> {
         let Event { lane, si, bsdf, .. } = event;
         let to_light: Vec3 = light.si.p - si.p;
         let distance_squared = to_light.length_squared();
@@ -206,7 +225,7 @@ impl BdptIntegrator {
         let w_camera = exponent.sum(event.partial, to_here, f64::from(back.0));
         let weight = Exponent::weight(w_light, w_camera) as f32;
         let ray = si.spawn_ray_to(light.si.p, light.si.error, light.si.ng);
-        Some((ray, lane.beta * light.beta * f * weight))
+        Some((ray, lane.beta * light.beta * f * weight, weight))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Light subpaths: they start at lights, keep their vertices, and are connected to the lens.
 
 use super::mis::{Exponent, LightStart, Partial};
+use super::pyramid::Record;
 use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage};
 use crate::geometry::{Ray, SurfaceInteraction};
 use crate::integrator::lane::Lane;
@@ -46,16 +47,29 @@ pub(in crate::integrator) struct LightVertices<'s> {
     vertices: Vec<LightVertex<'s>>,
     /// By slot: the last one.
     last: Vec<u32>,
+    /// What each strategy finds, if that is wanted.
+    pub(super) record: Option<Box<Record>>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl<'s> LightVertices<'s> {
+    /// None, and where to note what each strategy finds.
+    pub(super) fn recording(record: Option<Box<Record>>) -> Self {
+        Self {
+            record,
+            ..Self::default()
+        }
+    }
+
     /// Forgets all, for a wave of so many slots.
     pub fn restart(&mut self, slots: usize) {
         self.vertices.clear();
         self.last.clear();
         self.last.resize(slots, NONE);
+        if let Some(record) = &mut self.record {
+            record.restart(slots);
+        }
     }
 
     fn push(&mut self, slot: u32, mut vertex: LightVertex<'s>) {
@@ -209,7 +223,11 @@ impl BdptIntegrator {
             film: lens.ray.film,
             value: lane.beta * f * (weight as f32),
         };
-        stage.splat_unless_occluded(&si.spawn_ray_to(lens.end, 0.0, Vec3::ZERO), splat);
+        let ray = si.spawn_ray_to(lens.end, 0.0, Vec3::ZERO);
+        if let Some(record) = &mut stage.memory.record {
+            record.splat_unless_occluded(stage.scene, &ray, stage.depth + 2, &splat, weight as f32);
+        }
+        stage.splat_unless_occluded(&ray, splat);
     }
 }
 

@@ -17,15 +17,19 @@
 mod camera_path;
 mod light_path;
 mod mis;
+mod pyramid;
 
 use self::light_path::{LightRay, LightVertices};
 use self::mis::{Exponent, Partial};
+use self::pyramid::Record;
+pub use self::pyramid::{Pyramid, StrategyLayer};
 use super::fault::Fault;
 use super::lane::Lane;
 use super::numbers::EventNumbers;
 use super::path::survival;
-use super::stage::{Estimator, Stage, Vertex};
+use super::stage::{Estimator, Retiring, Stage, Vertex};
 use crate::desc::Heuristic;
+use crate::film::Film;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
@@ -103,6 +107,16 @@ impl Estimator for BdptIntegrator {
             n: Vec3::ZERO,
             partial: Partial { vcm: 0.0, vc: 0.0 },
             throughput: 1.0,
+        }
+    }
+
+    fn memory<'s>(&self, film: &Film) -> LightVertices<'s> {
+        LightVertices::recording(Record::for_film(film))
+    }
+
+    fn retire_layers(&self, memory: &mut LightVertices<'_>, wave: &Retiring<'_>) {
+        if let Some(record) = &mut memory.record {
+            record.retire(wave);
         }
     }
 
