@@ -274,35 +274,23 @@ impl<'s, E: Estimator> Wave<'s, E> {
                 }
                 let ray = &rays.get(i);
                 let numbers = &numbers.get(i);
-                let Some(hit) = hits.get(i) else {
-                    let (surface, cone) = (None, lane.cone);
-                    estimator.shade(
-                        &mut stage,
-                        Vertex {
-                            lane,
-                            ray,
-                            surface,
-                            cone,
-                            numbers,
-                        },
-                    );
-                    continue;
+                let mut si;
+                let (mut surface, mut cone) = (None, lane.cone);
+                if let Some(hit) = hits.get(i) {
+                    let behind = scene.interaction_behind(ray, hit, hits.t[i]);
+                    si = behind.unwrap_or_else(|| surfaces.get(scene.world(), i, ray, hit));
+                    cone = cone.after(si.p.distance(ray.origin));
+                    si.footprint = cone.width;
+                    surface = Some(&si);
+                }
+                let vertex = Vertex {
+                    lane,
+                    ray,
+                    surface,
+                    cone,
+                    numbers,
                 };
-                let behind = scene.interaction_behind(ray, hit, hits.t[i]);
-                let mut si = behind.unwrap_or_else(|| surfaces.get(scene.world(), i, ray, hit));
-                let cone = lane.cone.after(si.p.distance(ray.origin));
-                si.footprint = cone.width;
-                let surface = Some(&si);
-                estimator.shade(
-                    &mut stage,
-                    Vertex {
-                        lane,
-                        ray,
-                        surface,
-                        cone,
-                        numbers,
-                    },
-                );
+                estimator.shade(&mut stage, vertex);
             }
             stage.limit_shadows(&mut stats);
         }

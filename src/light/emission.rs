@@ -74,6 +74,19 @@ impl EmissionDensity {
         }
     }
 
+    /// The product of both, without those that are delta functions.
+    pub fn product(&self) -> f64 {
+        let position = match self.position {
+            LightDensity::Continuous(AreaPdf(pdf)) => f64::from(pdf),
+            LightDensity::Delta => 1.0,
+        };
+        let direction = match self.direction {
+            LightDensity::Continuous(SolidAnglePdf(pdf)) => f64::from(pdf),
+            LightDensity::Delta => 1.0,
+        };
+        position * direction
+    }
+
     /// Whether a ray could be drawn with it.
     pub(super) fn is_possible(&self) -> bool {
         let possible = |pdf: f32| pdf > 0.0 && pdf.is_finite();

@@ -238,14 +238,6 @@ fn start_of(
     chosen_to_emit: f64,
     emission: &EmissionDensity,
 ) -> LightStart {
-    let position = match emission.position {
-        LightDensity::Continuous(pdf) => f64::from(pdf.0),
-        LightDensity::Delta => 1.0,
-    };
-    let direction = match emission.direction {
-        LightDensity::Continuous(pdf) => f64::from(pdf.0),
-        LightDensity::Delta => 1.0,
-    };
     let cos_light = match (light, sample.end) {
         (Light::Area(_), LightEnd::Point { ng, .. }) => f64::from(ng.dot(sample.wi).abs()),
         _ => 1.0,
@@ -257,7 +249,7 @@ fn start_of(
     };
     LightStart {
         direct: pmf * density,
-        emission: chosen_to_emit * position * direction,
+        emission: chosen_to_emit * emission.product(),
         cos_light,
         is_delta: light.is_delta(),
     }

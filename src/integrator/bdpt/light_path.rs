@@ -106,15 +106,7 @@ impl BdptIntegrator {
             &bounds,
         );
         let Some(sample) = sample else { return };
-        let position = match sample.density.position {
-            LightDensity::Continuous(pdf) => f64::from(pdf.0),
-            LightDensity::Delta => 1.0,
-        };
-        let direction = match sample.density.direction {
-            LightDensity::Continuous(pdf) => f64::from(pdf.0),
-            LightDensity::Delta => 1.0,
-        };
-        let emission = f64::from(chosen.pmf) * position * direction;
+        let emission = f64::from(chosen.pmf) * sample.density.product();
         let has_delta_position = sample.density.position == LightDensity::Delta;
         let ray = sample.ray(of_slot.time);
         let lane = Lane {
