@@ -17,6 +17,7 @@
 //! direction from it.
 
 mod bdpt;
+mod direct;
 mod fault;
 mod kajiya;
 mod lane;
