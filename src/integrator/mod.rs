@@ -23,6 +23,7 @@ mod kajiya;
 mod lane;
 mod numbers;
 mod path;
+mod photon;
 mod schedule;
 mod shadow;
 mod stage;
@@ -35,6 +36,8 @@ pub use bdpt::{BdptIntegrator, Pyramid, Strategies, StrategyLayer};
 pub use fault::Fault;
 pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
+#[doc(hidden)]
+pub use photon::{KdTree, Nearest};
 pub use schedule::{Progress, Silent};
 
 use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
