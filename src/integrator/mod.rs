@@ -16,6 +16,7 @@
 //! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;
 //! direction from it.
 
+mod adjoint;
 mod bdpt;
 mod direct;
 mod fault;
@@ -38,11 +39,16 @@ pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
 #[doc(hidden)]
 pub use photon::{KdTree, Nearest};
+pub use photon::{PhotonCount, PhotonIntegrator, SppmIntegrator};
 pub use schedule::{Progress, Silent};
 
-use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
+use crate::desc::{
+    Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc, Strategy,
+    Terms,
+};
 use crate::film::Film;
 use crate::scene::{Scene, View};
+use photon::Stand;
 
 /// The integrators there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,11 +59,15 @@ pub enum Integrator {
     Kajiya(KajiyaIntegrator),
     /// Bidirectional path tracing, or light tracing.
     Bdpt(BdptIntegrator),
+    /// Photon mapping in two passes.
+    Photon(PhotonIntegrator),
+    /// Progressive photon mapping.
+    Sppm(SppmIntegrator),
 }
 
 impl Integrator {
     /// The names by which a scene or a command line chooses one.
-    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath"];
+    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath", "photon", "sppm"];
 
     /// The one that a scene asks for.
     pub fn from_desc(desc: &IntegratorDesc) -> Self {
@@ -96,6 +106,8 @@ impl Integrator {
                 strategies: Strategies::LightTracer,
                 fault: Fault::None,
             }),
+            IntegratorKind::Photon(parameters) => Self::Photon(PhotonIntegrator { max_depth, parameters }),
+            IntegratorKind::Sppm(parameters) => Self::Sppm(SppmIntegrator { max_depth, parameters }),
         }
     }
 
@@ -108,11 +120,15 @@ impl Integrator {
             "kajiya" => IntegratorKind::Kajiya(KajiyaDesc::default()),
             "bdpt" => IntegratorKind::Bdpt(Heuristic::default()),
             "lightpath" => IntegratorKind::LightTracer,
+            "photon" => IntegratorKind::Photon(PhotonDesc::default()),
+            "sppm" => IntegratorKind::Sppm(SppmDesc::default()),
             _ => IntegratorKind::Path(PathDesc::default()),
         };
         let (Self::Path(PathIntegrator { max_depth, .. })
         | Self::Kajiya(KajiyaIntegrator { max_depth, .. })
-        | Self::Bdpt(BdptIntegrator { max_depth, .. })) = self;
+        | Self::Bdpt(BdptIntegrator { max_depth, .. })
+        | Self::Photon(PhotonIntegrator { max_depth, .. })
+        | Self::Sppm(SppmIntegrator { max_depth, .. })) = self;
         Self::from_desc(&IntegratorDesc {
             max_depth,
             light_sampler: LightSamplerKind::default(),
@@ -129,6 +145,8 @@ impl Integrator {
                 Strategies::All => "bdpt",
                 Strategies::LightTracer => "lightpath",
             },
+            Self::Photon(_) => "photon",
+            Self::Sppm(_) => "sppm",
         }
     }
 
@@ -139,6 +157,8 @@ impl Integrator {
             Self::Path(path) => path.max_depth = max_depth,
             Self::Kajiya(kajiya) => kajiya.max_depth = max_depth,
             Self::Bdpt(bdpt) => bdpt.max_depth = max_depth,
+            Self::Photon(photon) => photon.max_depth = max_depth,
+            Self::Sppm(sppm) => sppm.max_depth = max_depth,
         }
         self
     }
@@ -148,14 +168,33 @@ impl Integrator {
     pub fn with_strategy(self, strategy: Strategy) -> Option<Self> {
         match self {
             Self::Path(path) => Some(Self::Path(PathIntegrator { strategy, ..path })),
-            Self::Kajiya(_) | Self::Bdpt(_) => None,
+            Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) | Self::Sppm(_) => None,
+        }
+    }
+
+    /// The same integrator, showing these parts of the light only. `None` if it does not take light apart.
+    #[must_use]
+    pub fn with_terms(mut self, terms: Terms) -> Option<Self> {
+        match &mut self {
+            Self::Photon(photon) => photon.parameters.terms = terms,
+            Self::Sppm(sppm) => sppm.parameters.terms = terms,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) => return None,
+        }
+        Some(self)
+    }
+
+    /// What the number of samples of a pixel is a multiple of.
+    pub fn samples_multiple(&self) -> u32 {
+        match self {
+            Self::Photon(photon) => photon.parameters.passes,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => 1,
         }
     }
 
     /// An empty film for what it does with `view`.
     pub fn film(&self, view: &View) -> Film {
         match self {
-            Self::Path(_) | Self::Kajiya(_) => view.film(),
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => view.film(),
             Self::Bdpt(_) => view.film().with_splats(),
         }
     }
@@ -164,7 +203,7 @@ impl Integrator {
     pub fn film_of_strategies(&self, view: &View, pyramid: Pyramid) -> Option<Film> {
         match self {
             Self::Bdpt(bdpt) => bdpt.film_of_strategies(view, pyramid),
-            Self::Path(_) | Self::Kajiya(_) => None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => None,
         }
     }
 
@@ -172,10 +211,13 @@ impl Integrator {
     /// does not depend on how many those are.
     pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
         let start = Instant::now();
+        let samples = view.samples.clone();
         let mut stats = match self {
-            Self::Path(path) => schedule::render_tiles(scene, view, film, path, progress),
-            Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, progress),
-            Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, progress),
+            Self::Path(path) => schedule::render_tiles(scene, view, film, path, samples, progress),
+            Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, samples, progress),
+            Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, samples, progress),
+            Self::Photon(photon) => photon.render(Stand { scene, view, film }, progress),
+            Self::Sppm(sppm) => sppm.render(Stand { scene, view, film }, progress),
         };
         stats.render_time = start.elapsed();
         stats
@@ -195,6 +237,10 @@ pub struct RenderStats {
     pub bounce_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// Photons of caustic maps.
+    pub caustic_photons: PhotonCount,
+    /// Photons of global maps.
+    pub global_photons: PhotonCount,
     /// Samples that counted as black because they were not finite or negative.
     pub dropped_samples: u64,
     /// The first few of them, by pixel and sample.
@@ -225,6 +271,8 @@ impl RenderStats {
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
         self.shadow_rays += other.shadow_rays;
+        self.caustic_photons += other.caustic_photons;
+        self.global_photons += other.global_photons;
         self.dropped_samples += other.dropped_samples;
         self.dropped.extend(other.dropped);
         self.dropped.sort_unstable();

@@ -33,8 +33,8 @@ pub struct PathIntegrator {
 const FIRST_ROULETTE_DEPTH: u32 = 2;
 
 /// From this depth on a path without limit survives with at most [`LAST_SURVIVAL`], or one between perfect mirrors would not end.
-const LAST_SURVIVAL_DEPTH: u32 = 64;
-const LAST_SURVIVAL: f32 = 0.95;
+pub(super) const LAST_SURVIVAL_DEPTH: u32 = 64;
+pub(super) const LAST_SURVIVAL: f32 = 0.95;
 
 type PathLane = Lane<Origin>;
 type PathStage<'a, 's> = Stage<'a, 's, PathIntegrator>;

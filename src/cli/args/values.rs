@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 
 use crate::accel::{Backend, BuildQuality};
-use crate::desc::Strategy;
+use crate::desc::{Strategy, Term};
 use crate::film::PixelRect;
 use crate::sampling::{SamplerKind, Strata};
 use crate::spectrum::ColorMode;
@@ -44,6 +44,30 @@ impl From<StrategyArg> for Strategy {
             StrategyArg::Bsdf => Self::Bsdf,
             StrategyArg::Light => Self::Light,
             StrategyArg::Mis => Self::Mis,
+        }
+    }
+}
+
+/// One of `--terms`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum TermArg {
+    /// Lights, and what they light straight
+    Direct,
+    /// The same, seen in mirrors and through glass
+    Specular,
+    /// What mirrors and glass throw on other surfaces
+    Caustic,
+    /// What other surfaces throw on each other
+    Indirect,
+}
+
+impl From<TermArg> for Term {
+    fn from(arg: TermArg) -> Self {
+        match arg {
+            TermArg::Direct => Self::Direct,
+            TermArg::Specular => Self::Specular,
+            TermArg::Caustic => Self::Caustic,
+            TermArg::Indirect => Self::Indirect,
         }
     }
 }

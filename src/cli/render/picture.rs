@@ -6,8 +6,8 @@ use std::time::Instant;
 use super::Job;
 use super::prepare::{Picture, Prepared};
 use crate::cli::report::Reporter;
-use crate::cli::stats::{Statistics, peak_memory_bytes};
-use crate::desc::SceneDesc;
+use crate::cli::stats::{Photons, Statistics, peak_memory_bytes};
+use crate::desc::{SceneDesc, Terms};
 use crate::error::{Error, Result};
 use crate::image_io::{Image, ImageMetadata, Window};
 use crate::integrator::{Integrator, RenderStats};
@@ -89,6 +89,18 @@ impl Job<'_> {
         if let Some(max_depth) = self.args.max_depth {
             integrator = integrator.with_max_depth(max_depth.0);
         }
+        if !self.args.terms.is_empty() {
+            let name = integrator.name();
+            let terms = self
+                .args
+                .terms
+                .iter()
+                .fold(Terms::NONE, |terms, &term| terms.with(term.into()));
+            integrator = integrator.with_terms(terms).ok_or_else(|| {
+                let message = "--terms is for the integrators `photon` and `sppm`";
+                Error::Usage(format!("{message}: `{name}` does not take light apart"))
+            })?;
+        }
         let Some(strategy) = self.args.strategy else {
             return Ok(integrator);
         };
@@ -139,6 +151,7 @@ impl Job<'_> {
             rays: stats.rays(),
             rays_per_second: stats.rays() as f64 / render_seconds.max(1e-9),
             peak_memory_bytes: peak_memory_bytes(),
+            photons: Photons::of(stats),
             dropped_samples: stats.dropped_samples,
         }
     }

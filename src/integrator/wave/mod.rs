@@ -81,9 +81,9 @@ impl<'s, E: Estimator> Wave<'s, E> {
         }
     }
 
-    /// What was done so far.
-    pub fn into_stats(self) -> RenderStats {
-        self.stats
+    /// What was done since the last time.
+    pub fn take_stats(&mut self) -> RenderStats {
+        std::mem::take(&mut self.stats)
     }
 
     /// Renders the samples `samples` of a tile.
