@@ -1,15 +1,19 @@
 //! Passes: photons first, then the camera paths of some samples, all at the wavelengths and the time of the pass.
 
+use std::time::Instant;
+
 use super::eye::Eye;
 use super::gather::{GatherPass, Maps, Strata};
 use super::guide::EmissionGuide;
 use super::irradiance::IrradianceMap;
 use super::kernel::Kernel;
+use super::limits::LimitedProgress;
 use super::map::{Gathering, PhotonMap};
 use super::progressive::{ProgressivePass, Radius, shrinkage};
 use super::shoot::{PhotonNumbers, Shot, Stand, Until, learn_caustics, moment_of, shoot};
 use super::tracer::{Keep, PhotonTracer};
 use super::{PhotonCount, PhotonIntegrator, SppmIntegrator};
+use crate::desc::Terms;
 use crate::integrator::RenderStats;
 use crate::integrator::schedule::{Progress, render_tiles};
 use crate::integrator::stage::Moment;
@@ -106,6 +110,9 @@ impl PhotonIntegrator {
         };
         let mut terms = parameters.terms;
         terms.indirect &= global > 0;
+        if self.shown.is_some() {
+            terms = Terms::NONE;
+        }
         let mut render = Render::new(stand, self.max_depth, caustic > 0);
         for (pass, samples) in passes(view, samples) {
             let moment = moment_of(view.sampler.seed(), pass);
@@ -120,6 +127,7 @@ impl PhotonIntegrator {
                     max_depth: self.max_depth,
                     terms,
                 },
+                shown: self.shown,
                 moment,
                 maps: &maps,
                 gathering,
@@ -165,6 +173,12 @@ impl SppmIntegrator {
             Some(_) => (f64::from(photons) * CAUSTIC_SHARE) as u32,
             None => 0,
         };
+        let start = Instant::now();
+        let progress = &LimitedProgress {
+            progress,
+            start,
+            time: self.limits.time,
+        };
         for (pass, samples) in passes(view, 1) {
             let moment = moment_of(view.sampler.seed(), pass);
             let estimator = ProgressivePass {
@@ -184,6 +198,11 @@ impl SppmIntegrator {
             };
             let of_pass = render_tiles(scene, view, film, &estimator, samples, progress);
             render.stats.merge(of_pass);
+            let done = pass + 1 - view.samples.start;
+            if self.limits.are_reached(start, film, done) {
+                render.stats.stopped_after = Some(done);
+                break;
+            }
         }
         render.stats
     }
