@@ -38,12 +38,14 @@ struct Render<'a> {
 }
 
 impl<'a> Render<'a> {
-    fn new(stand: Stand<'a>, max_depth: Option<u32>, has_caustics: bool) -> Self {
+    /// `caustic` photons of a pass are aimed, of `passes` passes.
+    fn new(stand: Stand<'a>, max_depth: Option<u32>, caustic: u32, passes: u32) -> Self {
         let mut stats = RenderStats::default();
-        let has_caustics = has_caustics && !stand.scene.materials().iter().all(Material::is_never_specular);
+        let photons = u64::from(caustic) * u64::from(passes);
+        let has_caustics = photons > 0 && !stand.scene.materials().iter().all(Material::is_never_specular);
         Self {
             guide: has_caustics
-                .then(|| learn_caustics(stand, max_depth, &mut stats))
+                .then(|| learn_caustics(stand, max_depth, photons, &mut stats))
                 .flatten(),
             stand,
             max_depth,
@@ -113,7 +115,12 @@ impl PhotonIntegrator {
         if self.shown.is_some() {
             terms = Terms::NONE;
         }
-        let mut render = Render::new(stand, self.max_depth, caustic > 0);
+        let mut render = Render::new(
+            stand,
+            self.max_depth,
+            caustic,
+            view.sampler.samples_per_pixel().div_ceil(samples),
+        );
         for (pass, samples) in passes(view, samples) {
             let moment = moment_of(view.sampler.seed(), pass);
             let maps = Maps::new(
@@ -168,11 +175,9 @@ impl SppmIntegrator {
         let parameters = &self.parameters;
         let [width, height] = view.resolution;
         let photons = parameters.photons.unwrap_or_else(|| width.saturating_mul(height));
-        let mut render = Render::new(stand, self.max_depth, photons > 0);
-        let caustic = match render.guide {
-            Some(_) => (f64::from(photons) * CAUSTIC_SHARE) as u32,
-            None => 0,
-        };
+        let aimed = (f64::from(photons) * CAUSTIC_SHARE) as u32;
+        let mut render = Render::new(stand, self.max_depth, aimed, view.sampler.samples_per_pixel());
+        let caustic = if render.guide.is_some() { aimed } else { 0 };
         let start = Instant::now();
         let progress = &LimitedProgress {
             progress,

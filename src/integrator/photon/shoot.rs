@@ -200,21 +200,26 @@ fn follow(
     starts.into_par_iter().map_init(new_wave, follow_chunk).collect()
 }
 
-/// Pilots that teach where caustics come from: of the first round, unaimed, up to so many if those find nothing; and of each later
-/// round, aimed by what is known from those before.
+/// Pilots that teach where caustics come from: of the first round, unaimed, up to [`MOST_PILOTS`] if those find nothing.
 const FIRST_PILOTS: u32 = 1 << 16;
+/// Of later rounds together, aimed by what is known from those before.
+const LEAST_LATER_PILOTS: u32 = 1 << 17;
 const MOST_PILOTS: u32 = 1 << 20;
-const LATER_ROUNDS: u32 = 2;
+/// A pilot teaches for so many photons: what no pilot found is found by a photon that is much brighter than the others, and the more
+/// photons there are the more of these there would be.
+const PHOTONS_PER_PILOT: u64 = 16;
 
-/// Learns where to aim photons that end in the caustic map. `None` if no pilot did: the scene has no caustics to speak of.
+/// Learns where to aim the photons of all passes, `photons` of them, that end in the caustic map. `None` if no pilot did: the scene has
+/// no caustics to speak of.
 pub(super) fn learn_caustics(
     stand: Stand<'_>,
     max_depth: Option<u32>,
+    photons: u64,
     stats: &mut RenderStats,
 ) -> Option<EmissionGuide> {
     let numbers = PhotonNumbers::of_kind(stand.view.sampler.seed(), PILOT_KIND, 0);
     let mut pilots = Vec::new();
-    let mut send = |first: u32, guide: Option<&EmissionGuide>, pilots: &mut Vec<Pilot>| {
+    let mut send = |range: std::ops::Range<u32>, guide: Option<&EmissionGuide>, pilots: &mut Vec<Pilot>| {
         let tracer = PhotonTracer {
             keep: Keep::Caustic,
             max_depth,
@@ -222,8 +227,8 @@ pub(super) fn learn_caustics(
         };
         // Of all wavelengths and times.
         let moment = |pilot| moment_of(!stand.view.sampler.seed(), pilot);
-        let mut path = first;
-        for chunk in follow(stand, &tracer, numbers, moment, first..first + FIRST_PILOTS) {
+        let mut path = range.start;
+        for chunk in follow(stand, &tracer, numbers, moment, range) {
             stats.merge(chunk.stats);
             let mut powers = vec![0.0_f32; chunk.paths as usize];
             for landed in &chunk.landed {
@@ -238,13 +243,17 @@ pub(super) fn learn_caustics(
     };
     let mut sent = 0;
     while sent < MOST_PILOTS && !pilots.iter().any(Pilot::is_useful) {
-        send(sent, None, &mut pilots);
+        send(sent..sent + FIRST_PILOTS, None, &mut pilots);
         sent += FIRST_PILOTS;
     }
     let mut guide = EmissionGuide::new(&mut pilots)?;
-    for _ in 0..LATER_ROUNDS {
-        send(sent, Some(&guide), &mut pilots);
-        sent += FIRST_PILOTS;
+    let wanted = (photons / PHOTONS_PER_PILOT).clamp(u64::from(LEAST_LATER_PILOTS), u64::from(MOST_PILOTS)) as u32;
+    let end = sent + wanted;
+    while sent < end {
+        // As many as before, so that all are sorted a few times only.
+        let round = sent..end.min(2 * sent);
+        sent = round.end;
+        send(round, Some(&guide), &mut pilots);
         guide = EmissionGuide::new(&mut pilots)?;
     }
     Some(guide)
