@@ -22,6 +22,8 @@
 
 mod carried;
 mod eye;
+#[cfg(test)]
+mod flux_tests;
 mod gather;
 mod guide;
 mod irradiance;
