@@ -171,6 +171,7 @@ impl Maps {
 impl SppmIntegrator {
     /// Renders all passes, one for each sample of a pixel.
     pub(in crate::integrator) fn render(&self, stand: Stand<'_>, progress: &dyn Progress) -> RenderStats {
+        let start = Instant::now();
         let Stand { scene, view, film } = stand;
         let parameters = &self.parameters;
         let [width, height] = view.resolution;
@@ -178,7 +179,6 @@ impl SppmIntegrator {
         let aimed = (f64::from(photons) * CAUSTIC_SHARE) as u32;
         let mut render = Render::new(stand, self.max_depth, aimed, view.sampler.samples_per_pixel());
         let caustic = if render.guide.is_some() { aimed } else { 0 };
-        let start = Instant::now();
         let progress = &LimitedProgress {
             progress,
             start,
