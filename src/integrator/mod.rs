@@ -12,6 +12,9 @@
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
 //! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
 //!
+//! A photon has a stream of its own, by pass and kind of photon, with the groups of a light path; the wavelengths and the time of a pass are the
+//! same for all its photons and camera paths. A direction of a final gather has a branch of its sample's numbers.
+//!
 //! A light path has a [branch](crate::sampling::SampleStream::branch) of its sample's numbers, with the same groups at scattering events:
 //! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;
 //! direction from it.

@@ -40,7 +40,8 @@ fn flux(inside: &str, keep: Keep, max_depth: Option<u32>, until: Until, is_guide
         film: &film,
     };
     let mut stats = RenderStats::default();
-    let guide: Option<EmissionGuide> = is_guided.then(|| learn_caustics(stand, max_depth, &mut stats).expect("caustics"));
+    let guide: Option<EmissionGuide> =
+        is_guided.then(|| learn_caustics(stand, max_depth, &mut stats).expect("caustics"));
     let tracer = PhotonTracer {
         keep,
         max_depth,
@@ -65,7 +66,10 @@ fn assert_flux((mean, deviation): (f64, f64), expected: f64, name: &str) {
     assert!(deviation < 1e-3 * expected, "{name}: {deviation}");
     // Up to 5e-4 are the rounding of powers and the photon path that is left out at the end.
     let far = (mean - expected).abs();
-    assert!(far < 4.0 * deviation + 5e-4 * expected, "{name}: {mean} instead of {expected}");
+    assert!(
+        far < 4.0 * deviation + 5e-4 * expected,
+        "{name}: {mean} instead of {expected}"
+    );
 }
 
 const POINT: &str = r#"LightSource "point" "point3 from" [0.1 -0.2 0.3] "rgb I" [1 1 1]"#;
