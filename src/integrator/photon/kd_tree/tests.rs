@@ -251,7 +251,7 @@ fn a_batch_finds_what_its_queries_find() {
         let queries = queries(&points);
         let mut times = vec![0; queries.len()];
         let mut found = Nearest::new();
-        let accept = |query: usize, place: u32| (query + place as usize) % 3 != 0;
+        let accept = |query: usize, place: u32| !(query + place as usize).is_multiple_of(3);
         tree.nearest_batch(&queries, 30, 0.4, accept, &mut found, |query, found| {
             let mut alone = Nearest::new();
             tree.nearest(queries[query], 30, 0.4, |place| accept(query, place), &mut alone);
