@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::KdTree;
 use super::nodes::{LEAF, Leaf, Node, WIDTH};
-use crate::math::{Vec3, Vectorizer};
+use super::simd::Dispatch;
+use crate::math::Vec3;
 
 /// So many points are split by one thread.
 const SEQUENTIAL: usize = 1 << 12;
@@ -47,7 +48,7 @@ pub fn build(points: &[Vec3]) -> KdTree {
         levels.push(start..nodes.len());
     }
     KdTree {
-        vectorizer: Vectorizer::default(),
+        dispatch: Dispatch::default(),
         order: items.par_iter().map(|item| item.index).collect(),
         leaves,
         nodes,
@@ -110,7 +111,7 @@ fn leaf(items: &[Item]) -> Leaf {
     let mut leaf = Leaf::EMPTY;
     for (lane, item) in items.iter().enumerate() {
         for axis in 0..3 {
-            leaf.0[axis][lane] = item.p[axis];
+            leaf.0[axis].as_flattened_mut()[lane] = item.p[axis];
         }
     }
     leaf
