@@ -7,6 +7,12 @@
 use super::bracket::Bracket;
 use super::nodes::{LEAF, Lanes};
 use super::simd::{EIGHT, Simd};
+use crate::math::Vec3;
+
+/// How far a search may be from the last one, in radii of that, to learn from its radius.
+const MOVED: f32 = 2.0;
+/// How much greater its radius probably is at most. Where it is not, the search is done again.
+const GROWN: f32 = 1.15;
 
 /// What a search for nearest points found, and memory that the next search uses again.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +21,8 @@ pub struct Nearest {
     distances_squared: Vec<f32>,
     radius_squared: f32,
     candidates: Candidates,
+    /// Where the last search was that found as many as were asked for, and what it asked for.
+    last: Option<(Vec3, usize, f32)>,
 }
 
 /// Leaves that have points within the bound.
@@ -72,6 +80,25 @@ impl Nearest {
         self.radius_squared
     }
 
+    /// Within what squared distance of `p` there are probably `k` points, if the last search was near.
+    ///
+    /// Searches often follow one another closely.
+    #[inline(always)]
+    pub(super) fn likely_bound(&self, p: Vec3, k: usize) -> f32 {
+        match self.last {
+            Some((last, last_k, radius)) if last_k == k => {
+                let moved = last.distance(p);
+                let likely = (radius + moved).min(GROWN * radius);
+                if moved <= MOVED * radius {
+                    likely * likely
+                } else {
+                    f32::INFINITY
+                }
+            }
+            _ => f32::INFINITY,
+        }
+    }
+
     #[inline(always)]
     pub(super) fn start(&mut self, k: usize, bound: f32) -> &mut Candidates {
         let candidates = &mut self.candidates;
@@ -86,7 +113,7 @@ impl Nearest {
 
     /// Takes the candidates as what was found, within `radius_squared`.
     #[inline(always)]
-    pub(super) fn finish<S: Simd>(&mut self, simd: S, order: &[u32], radius_squared: f32) {
+    pub(super) fn finish<S: Simd>(&mut self, simd: S, order: &[u32], p: Vec3, radius_squared: f32) {
         let Self { candidates, .. } = self;
         self.radius_squared = radius_squared;
         let full = candidates.held >= candidates.k;
@@ -117,6 +144,7 @@ impl Nearest {
                 .distances_squared
                 .iter()
                 .fold(0.0, |a, b| if *b > a { *b } else { a });
+            self.last = Some((p, candidates.k, self.radius_squared.sqrt()));
         }
     }
 
@@ -134,6 +162,12 @@ impl Candidates {
     pub fn excludes(&self, distance: f32, first_index: impl FnOnce() -> u32) -> bool {
         distance > self.bound
             || (distance == self.bound && self.bound_index != u32::MAX && first_index() > self.bound_index)
+    }
+
+    /// Whether there are as many as are asked for.
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.held >= self.k
     }
 
     #[inline(always)]
@@ -191,8 +225,8 @@ impl Candidates {
     /// Lowers the bound, as far as there are `k` candidates within.
     #[inline(always)]
     fn tighten<S: Simd>(&mut self, simd: S, order: &[u32]) {
-        self.tighten_to(simd, self.k / 16);
-        self.enough = self.held + (self.k / 8).max(8);
+        self.tighten_to(simd, self.k / 4);
+        self.enough = self.held + (self.k / 2).max(8);
         if self.leaves.len() > 2 * self.k + 32 {
             self.compact(simd, order);
         }

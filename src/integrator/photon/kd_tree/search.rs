@@ -1,7 +1,7 @@
 //! Goes down the tree, nearest children first.
 
 use super::KdTree;
-use super::candidates::Nearest;
+use super::candidates::{Candidates, Nearest};
 use super::nodes::WIDTH;
 use super::nodes::{Center, LEAF};
 use super::simd::{EIGHT, Simd, Task};
@@ -58,41 +58,16 @@ impl<A: Fn(u32) -> bool> Task for NearestSearch<'_, A> {
             return;
         };
         let center = Center::new(simd, p);
-        let candidates = self.found.start(k, limit);
-        let mut stack = [Entry::default(); STACK];
-        stack[0] = Entry::new(0.0, tree.levels.len(), 0);
-        let mut top = usize::from(!tree.is_empty());
-        while top > 0 {
-            top -= 1;
-            let entry = stack[top];
-            if candidates.excludes(entry.distance(), || tree.first_index(entry)) {
-                continue;
+        let mut bound = self.found.likely_bound(p, k).min(limit);
+        loop {
+            let candidates = self.found.start(k, bound);
+            tree.collect(simd, &center, &self.accept, candidates);
+            if candidates.is_full() || bound == limit {
+                break;
             }
-            let number = entry.number();
-            if entry.level() == 0 {
-                let distances = tree.leaves[number].distances(simd, &center);
-                candidates.add(simd, number as u32, distances, &tree.order, &self.accept);
-                continue;
-            }
-            let level = entry.level() - 1;
-            let distances = tree.nodes[tree.levels[level].start + number].distances(simd, &center);
-            let mut near = simd.at_most(distances, simd.splat(candidates.bound()));
-            let distances = simd.store(distances);
-            let base = top;
-            while near != 0 {
-                let lane = near.trailing_zeros() as usize;
-                near &= near - 1;
-                let child = Entry::new(distances[lane], level, number * WIDTH + lane);
-                let mut at = top;
-                while at > base && stack[at - 1] < child {
-                    stack[at] = stack[at - 1];
-                    at -= 1;
-                }
-                stack[at] = child;
-                top += 1;
-            }
+            bound = limit;
         }
-        self.found.finish(simd, &tree.order, limit);
+        self.found.finish(simd, &tree.order, p, limit);
     }
 }
 
@@ -146,6 +121,50 @@ impl<V: FnMut(u32, f32)> Task for WithinSearch<'_, V> {
 }
 
 impl KdTree {
+    /// Adds to `candidates` what is within their bound.
+    #[inline(always)]
+    fn collect<S: Simd>(
+        &self,
+        simd: S,
+        center: &Center<S::Vector>,
+        accept: impl Fn(u32) -> bool,
+        candidates: &mut Candidates,
+    ) {
+        let mut stack = [Entry::default(); STACK];
+        stack[0] = Entry::new(0.0, self.levels.len(), 0);
+        let mut top = usize::from(!self.is_empty());
+        while top > 0 {
+            top -= 1;
+            let entry = stack[top];
+            if candidates.excludes(entry.distance(), || self.first_index(entry)) {
+                continue;
+            }
+            let number = entry.number();
+            if entry.level() == 0 {
+                let distances = self.leaves[number].distances(simd, center);
+                candidates.add(simd, number as u32, distances, &self.order, &accept);
+                continue;
+            }
+            let level = entry.level() - 1;
+            let distances = self.nodes[self.levels[level].start + number].distances(simd, center);
+            let mut near = simd.at_most(distances, simd.splat(candidates.bound()));
+            let distances = simd.store(distances);
+            let base = top;
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                let child = Entry::new(distances[lane], level, number * WIDTH + lane);
+                let mut at = top;
+                while at > base && stack[at - 1] < child {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = child;
+                top += 1;
+            }
+        }
+    }
+
     /// The least index of a point within.
     #[cold]
     fn first_index(&self, entry: Entry) -> u32 {
