@@ -1,6 +1,6 @@
 //! The points near a point: a balanced, implicit k-d tree.
 //!
-//! Points are split at a median of the widest extent of their box, again and again, until leaves have [`LEAF`] points. There are no
+//! Points are split at a median of the widest extent of their box, again and again, until leaves have [`LEAF`](nodes::LEAF) points. There are no
 //! pointers: points lie leaf after leaf, and a point's position in this order is its *place*. Three splits in a row make a node of
 //! [`WIDTH`] children, so that node `i` of one level has children `8 i..8 i + 8` of the level below. A split gives its left side the
 //! greatest power of two of full leaves that leaves something for the right: so all leaves but the last are full, and all have the
