@@ -1,5 +1,8 @@
 //! Finds a number that a given count of numbers do not exceed.
 
+/// After so many guesses something is odd about the numbers.
+const GUESSES: u32 = 12;
+
 /// Two numbers, of which one has too few below it.
 ///
 /// On surfaces the number of points within a radius grows with its square: a guess on the line between two counts is nearly right.
@@ -36,7 +39,7 @@ impl Bracket {
             return None;
         }
         self.guesses += 1;
-        let bits = if self.guesses.is_multiple_of(4) {
+        let bits = if self.guesses.is_multiple_of(4) || self.guesses > GUESSES {
             // The floats between are bisected, in case that guesses go astray.
             (low.0 + high.0) / 2
         } else {

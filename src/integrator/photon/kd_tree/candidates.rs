@@ -225,7 +225,12 @@ impl Candidates {
     /// Lowers the bound, as far as there are `k` candidates within.
     #[inline(always)]
     fn tighten<S: Simd>(&mut self, simd: S, order: &[u32]) {
-        self.tighten_to(simd, self.k / 4);
+        let slack = self.k / 4;
+        self.tighten_to(simd, slack);
+        // What is left over ties. The more of it there is, the more it matters to have done with it.
+        if self.held > self.k + slack {
+            self.drop_ties(order);
+        }
         self.enough = self.held + (self.k / 2).max(8);
         if self.leaves.len() > 2 * self.k + 32 {
             self.compact(simd, order);
