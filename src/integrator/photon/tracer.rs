@@ -62,7 +62,6 @@ pub(super) struct Landed {
 impl Estimator for PhotonTracer<'_> {
     type State = State;
     type Memory<'s> = Vec<Landed>;
-    const LIGHT_PATHS: bool = true;
 
     fn camera_state(&self, _view: &View, _ray: &Ray) -> State {
         State {

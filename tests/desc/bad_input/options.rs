@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn options() {
-    let cases: [Case; 12] = [
+    let cases: [Case; 18] = [
         (
             "Sampler \"sobol\" \"integer pixelsamples\" @0 WorldBegin",
             "must be 1 to 16777216",
@@ -36,7 +36,37 @@ fn options() {
             "",
         ),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),
-        ("Integrator @\"sppm\" WorldBegin", "not supported yet", ""),
+        ("Integrator @\"mlt\" WorldBegin", "not supported yet", ""),
+        (
+            "Integrator \"photon\" \"integer passes\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer causticphotons\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer nused\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"float maxdist\" @-1 WorldBegin",
+            "must be 0 or more",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" \"float radius\" @-1 WorldBegin",
+            "must be 0 or more",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" \"string filter\" @\"con\" WorldBegin",
+            "`filter` is one of",
+            "`cone`",
+        ),
         ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
         ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
         ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
