@@ -10,7 +10,7 @@
 //! | 0 | film x, film y, lens, lens |
 //! | 1 | wavelength, time |
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
-//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
+//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, which connections (bdpt), at scattering event d |
 //!
 //! A light path has a [branch](crate::sampling::SampleStream::branch) of its sample's numbers, with the same groups at scattering events:
 //! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;

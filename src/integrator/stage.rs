@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::RenderStats;
 use super::lane::{Batch, Lane, Slot};
 use super::numbers::EventNumbers;
-use super::shadow::{Contribution, ShadowQueue, SplatContribution, shadow_ray};
+use super::shadow::{Contribution, NO_NOTE, ShadowQueue, SplatContribution, shadow_ray};
 use super::wave::WAVE_LANES;
 use crate::film::{Film, TileSums};
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
@@ -38,6 +38,11 @@ pub(super) trait Estimator: Sync + Sized {
     /// Takes to the layers of the film what a wave kept for them.
     fn retire_layers(&self, memory: &mut Self::Memory<'_>, wave: &Retiring<'_>) {
         let _ = (memory, wave);
+    }
+
+    /// A contribution with this note was not blocked: what the estimator noted of it in `memory` counts.
+    fn arrived(memory: &mut Self::Memory<'_>, note: u32) {
+        let _ = (memory, note);
     }
 
     /// Starts the light path of a slot.
@@ -136,16 +141,17 @@ impl<E: Estimator> Stage<'_, '_, E> {
         light: &LightSample,
         value: SampledSpectrum,
     ) {
-        self.add_unless_occluded(lane.slot, &shadow_ray(si, light.wi, light.end), value);
+        let (slot, note) = (lane.slot, NO_NOTE);
+        self.add_unless_occluded(&shadow_ray(si, light.wi, light.end), Contribution { slot, note, value });
     }
 
-    /// Adds `value` to a slot if nothing is in the way of `ray`.
+    /// Adds a contribution to its slot if nothing is in the way of `ray`.
     #[inline]
-    pub fn add_unless_occluded(&mut self, slot: u32, ray: &Ray, value: SampledSpectrum) {
+    pub fn add_unless_occluded(&mut self, ray: &Ray, contribution: Contribution) {
         if ray.is_valid() {
-            self.shadows.push(ray, Contribution { slot, value });
+            self.shadows.push(ray, contribution);
         } else {
-            self.slots[slot as usize].broken = true;
+            self.slots[contribution.slot as usize].broken = true;
         }
     }
 
@@ -184,10 +190,18 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Traces all shadow rays.
     pub(super) fn flush_shadows(&mut self, stats: &mut RenderStats) {
         stats.shadow_rays += (self.shadows.len() + self.splats.len()) as u64;
-        let (slots, landed) = (&mut *self.slots, &mut *self.landed);
-        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, value }| {
+        let (slots, landed, memory) = (&mut *self.slots, &mut *self.landed, &mut *self.memory);
+        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, note, value }| {
             slots[slot as usize].l += value;
+            if note != NO_NOTE {
+                E::arrived(memory, note);
+            }
         });
-        stats.backend_time += self.splats.flush(self.scene, |splat| landed.push(splat));
+        stats.backend_time += self.splats.flush(self.scene, |splat| {
+            landed.push(splat);
+            if splat.note != NO_NOTE {
+                E::arrived(memory, splat.note);
+            }
+        });
     }
 }
