@@ -56,7 +56,6 @@ pub(super) trait Estimator: Sync + Sized {
 
 /// A wave whose paths have ended.
 pub(super) struct Retiring<'a> {
-    pub scene: &'a Scene,
     pub view: &'a View,
     pub film: &'a Film,
     pub slots: &'a [Slot],

@@ -303,7 +303,6 @@ impl<'s, E: Estimator> Wave<'s, E> {
     fn retire(&mut self, tile: Option<&Mutex<TileSums>>) {
         if !self.film.layers().is_empty() {
             let wave = Retiring {
-                scene: self.scene,
                 view: self.view,
                 film: self.film,
                 slots: &self.slots,
@@ -331,7 +330,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             }
             self.splatted.push(Splat {
                 film: splat.film,
-                rgb: self.view.sensor.to_rgb(splat.value, &slot.lambda),
+                rgb: self.view.splat_to_rgb(splat.value, &slot.lambda),
             });
         }
         self.stats.dropped_samples += self.film.splat(&self.view.filter, &mut self.splatted);

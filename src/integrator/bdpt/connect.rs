@@ -17,11 +17,9 @@ use crate::material::TransportMode;
 use crate::math::Vec3;
 use crate::spectrum::SampledSpectrum;
 
-/// δ, as a part of what all connections could bring.
-fn delta() -> f32 {
-    static D: std::sync::OnceLock<f32> = std::sync::OnceLock::new();
-    *D.get_or_init(|| std::env::var("BDPT_DELTA").ok().and_then(|v| v.parse().ok()).unwrap_or(0.1))
-}
+/// δ, as a part of what the connections of a camera subpath could bring. On the Cornell box it spares a fifth of all rays for 1 % more
+/// error; twice as much would spare a quarter for 4 %.
+const DELTA: f32 = 0.1;
 
 /// A connection that could be made.
 #[derive(Clone, Copy, Debug)]
@@ -42,15 +40,20 @@ impl BdptIntegrator {
         stage.memory.arrange();
         let mut connections = std::mem::take(&mut stage.memory.connections);
         connections.clear();
-        connections.extend(self.to_light(stage, event));
+        if let Some(connection) = self.to_light(stage, event) {
+            connections.push(connection);
+        }
         for (seat, vertex) in stage.memory.of(slot) {
-            if self.allows(stage.depth + seat.depth + 2) && seat.may_see(event.si.p) {
-                connections.extend(self.to_light_vertex(event, vertex, seat.depth + 2));
+            if self.allows(stage.depth + seat.depth + 2)
+                && seat.may_see(event.si.p)
+                && let Some(connection) = self.to_light_vertex(event, vertex, seat.depth + 2)
+            {
+                connections.push(connection);
             }
         }
         let found: f32 = connections.iter().map(|connection| connection.value.max_value()).sum();
         let found = event.lane.state.found + found;
-        self.make(stage, event, &connections, found * delta());
+        self.make(stage, event, &connections, found * DELTA);
         stage.memory.connections = connections;
         found
     }

@@ -67,6 +67,8 @@ impl Seat {
 /// The vertices of the light subpaths of a wave.
 #[derive(Debug, Default)]
 pub(in crate::integrator) struct LightVertices<'s> {
+    /// By slot.
+    starts: Vec<Option<LightRay>>,
     vertices: Vec<LightVertex<'s>>,
     /// In the same order: slots, and what is looked at first.
     made: Vec<(u32, Seat)>,
@@ -91,6 +93,8 @@ impl<'s> LightVertices<'s> {
 
     /// Forgets all, for a wave of so many slots.
     pub fn restart(&mut self, slots: usize) {
+        self.starts.clear();
+        self.starts.resize(slots, None);
         self.vertices.clear();
         self.made.clear();
         self.ends.clear();
@@ -99,6 +103,11 @@ impl<'s> LightVertices<'s> {
         if let Some(record) = &mut self.record {
             record.restart(slots);
         }
+    }
+
+    /// How the light subpath of a slot began; `None` if it has none.
+    pub(super) fn start(&self, slot: u32) -> Option<&LightRay> {
+        self.starts[slot as usize].as_ref()
     }
 
     fn push(&mut self, slot: u32, depth: u32, si: &SurfaceInteraction, vertex: LightVertex<'s>) {
@@ -170,6 +179,14 @@ impl BdptIntegrator {
         let emission = f64::from(chosen.pmf) * sample.density.product();
         let has_delta_position = sample.density.position == LightDensity::Delta;
         let ray = sample.ray(of_slot.time);
+        stage.memory.starts[slot as usize] = Some(LightRay {
+            light: chosen.light,
+            origin: sample.origin,
+            cos_theta: sample.cos_theta,
+            emission,
+            has_delta_position,
+            is_delta: has_delta_position || sample.density.direction == LightDensity::Delta,
+        });
         let lane = Lane {
             slot,
             split: false,
@@ -178,14 +195,7 @@ impl BdptIntegrator {
             eta_scale: 1.0,
             cone: Default::default(),
             state: State {
-                origin: Origin::Light(LightRay {
-                    light: chosen.light,
-                    origin: sample.origin,
-                    cos_theta: sample.cos_theta,
-                    emission,
-                    has_delta_position,
-                    is_delta: has_delta_position || sample.density.direction == LightDensity::Delta,
-                }),
+                origin: Origin::Light,
                 p: ray.origin,
                 n: Vec3::ZERO,
                 partial: Partial { vcm: 0.0, vc: 0.0 },
@@ -259,7 +269,15 @@ impl BdptIntegrator {
             Some(record) => record.note_splat(slot, stage.depth + 2, value, in_full, film),
             None => NO_NOTE,
         };
-        stage.splat_unless_occluded(&ray, SplatContribution { slot, note, film, value });
+        stage.splat_unless_occluded(
+            &ray,
+            SplatContribution {
+                slot,
+                note,
+                film,
+                value,
+            },
+        );
     }
 }
 

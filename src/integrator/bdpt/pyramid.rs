@@ -252,7 +252,7 @@ impl Record {
                 continue;
             }
             for (layer, value) in found.by_layer(self.pyramid) {
-                let rgb = wave.view.sensor.to_rgb(value, &slot.lambda);
+                let rgb = wave.view.splat_to_rgb(value, &slot.lambda);
                 splats[layer].push(Splat { film, rgb });
             }
         }
