@@ -124,6 +124,11 @@ struct LocalRay {
 }
 
 impl Camera {
+    /// Whether it stays where it is.
+    pub fn is_static(&self) -> bool {
+        self.world_from_camera.is_static()
+    }
+
     /// The scene time at which the shutter has been open for the share `u` of its time (see [`super::CameraSample::time`]).
     #[inline]
     pub fn scene_time(&self, u: f32) -> f32 {

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::integrator::RenderStats;
+
 /// The statistics of one render, as `--stats` and `--json` write them.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
@@ -49,8 +51,37 @@ pub struct Statistics {
     pub rays_per_second: f64,
     /// Most memory that the process had so far; 0 where the system does not tell.
     pub peak_memory_bytes: u64,
+    /// What the integrator's photons did, if it has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub photons: Option<Photons>,
     /// Samples that counted as black because they were not finite or negative.
     pub dropped_samples: u64,
+}
+
+/// Photons of all passes.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Photons {
+    /// Emitted for the caustic map.
+    pub caustic_emitted: u64,
+    /// Kept there.
+    pub caustic_stored: u64,
+    /// Emitted for the global map.
+    pub global_emitted: u64,
+    /// Kept there.
+    pub global_stored: u64,
+}
+
+impl Photons {
+    /// Those of a render; `None` if there were none.
+    pub fn of(stats: &RenderStats) -> Option<Self> {
+        let (caustic, global) = (stats.caustic_photons, stats.global_photons);
+        (caustic.emitted + global.emitted > 0).then_some(Self {
+            caustic_emitted: caustic.emitted,
+            caustic_stored: caustic.stored,
+            global_emitted: global.emitted,
+            global_stored: global.stored,
+        })
+    }
 }
 
 /// Most resident memory that this process had so far; 0 where the system does not tell.

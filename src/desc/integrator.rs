@@ -22,6 +22,10 @@ pub enum IntegratorKind {
     Bdpt(Heuristic),
     /// From the lights to the camera.
     LightTracer,
+    /// Photon mapping in two passes.
+    Photon(PhotonDesc),
+    /// Photon mapping in ever finer passes.
+    Sppm(SppmDesc),
 }
 
 /// Parameters of [`IntegratorKind::Path`].
@@ -106,6 +110,141 @@ pub enum Distribution {
     Cosine,
     /// The BSDF's own.
     Bsdf,
+}
+
+/// Parameters of [`IntegratorKind::Photon`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonDesc {
+    /// Photons stored in the caustic map of a pass, at most; `None`: as many as the program thinks right.
+    pub caustic_photons: Option<u32>,
+    /// Photons stored in the global map of a pass, at most; `None` as above.
+    pub global_photons: Option<u32>,
+    /// Photons of a radiance estimate, at most; at least 1.
+    pub used: u32,
+    /// How far away these may be, in scene units; `None`: 2 % of the radius of the scene.
+    pub max_distance: Option<f32>,
+    /// Directions of a final gather, for each camera sample; at least 1.
+    pub final_gather_samples: u32,
+    /// Passes, each with maps of its own; at least 1.
+    pub passes: u32,
+    /// How photons count by their distance.
+    pub filter: PhotonFilter,
+    /// Which parts of the light are shown.
+    pub terms: Terms,
+}
+
+impl Default for PhotonDesc {
+    fn default() -> Self {
+        Self {
+            caustic_photons: None,
+            global_photons: None,
+            used: 50,
+            max_distance: None,
+            final_gather_samples: 32,
+            passes: 16,
+            filter: PhotonFilter::default(),
+            terms: Terms::ALL,
+        }
+    }
+}
+
+/// Parameters of [`IntegratorKind::Sppm`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SppmDesc {
+    /// Photons emitted in a pass; `None`: as many as the picture has pixels.
+    pub photons: Option<u32>,
+    /// Radius of the first pass's radiance estimates, in scene units; `None`: in proportion to what a pixel sees.
+    pub radius: Option<f32>,
+    /// How photons count by their distance.
+    pub filter: PhotonFilter,
+    /// Which parts of the light are shown.
+    pub terms: Terms,
+}
+
+impl Default for SppmDesc {
+    fn default() -> Self {
+        Self {
+            photons: None,
+            radius: None,
+            filter: PhotonFilter::default(),
+            terms: Terms::ALL,
+        }
+    }
+}
+
+/// How photons count by their distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum PhotonFilter {
+    /// The less, the farther away they are.
+    #[default]
+    Cone,
+    /// By a Gaussian.
+    Gaussian,
+    /// All alike.
+    Constant,
+}
+
+/// The parts that photon mapping takes light apart into; each path belongs to one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// What is lit straight by lights, and lights themselves.
+    Direct,
+    /// The same, seen in mirrors and through glass.
+    Specular,
+    /// Light that mirrors and glass throw on other surfaces.
+    Caustic,
+    /// What surfaces that are not specular throw on others.
+    Indirect,
+}
+
+/// A set of [`Term`]s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "see Term")]
+pub struct Terms {
+    pub direct: bool,
+    pub specular: bool,
+    pub caustic: bool,
+    pub indirect: bool,
+}
+
+impl Terms {
+    /// All of the light.
+    pub const ALL: Self = Self {
+        direct: true,
+        specular: true,
+        caustic: true,
+        indirect: true,
+    };
+    /// None of it.
+    pub const NONE: Self = Self {
+        direct: false,
+        specular: false,
+        caustic: false,
+        indirect: false,
+    };
+
+    /// These and `term`.
+    #[must_use]
+    pub fn with(mut self, term: Term) -> Self {
+        match term {
+            Term::Direct => self.direct = true,
+            Term::Specular => self.specular = true,
+            Term::Caustic => self.caustic = true,
+            Term::Indirect => self.indirect = true,
+        }
+        self
+    }
+
+    /// Whether `term` is among them.
+    #[inline]
+    pub fn has(&self, term: Term) -> bool {
+        match term {
+            Term::Direct => self.direct,
+            Term::Specular => self.specular,
+            Term::Caustic => self.caustic,
+            Term::Indirect => self.indirect,
+        }
+    }
 }
 
 /// How one of many lights is chosen.

@@ -232,6 +232,15 @@ impl World {
             .fold(self.union_of(&self.root), Bounds3::union)
     }
 
+    /// Whether anything in it moves.
+    pub fn moves(&self) -> bool {
+        let deforms = |geometry: &Geometry| match &geometry.shape {
+            Shape::Mesh(mesh) => mesh.time_steps() > 1,
+            Shape::Spheres(_) => false,
+        };
+        self.geometries.iter().any(deforms) || self.instances.iter().any(|i| !i.world_from_object.is_static())
+    }
+
     /// Primitives with each instance of them counted.
     pub fn instanced_primitive_count(&self) -> u64 {
         let count = |members: &[GeometryId]| -> u64 {

@@ -16,12 +16,15 @@
 //! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;
 //! direction from it.
 
+mod adjoint;
 mod bdpt;
+mod direct;
 mod fault;
 mod kajiya;
 mod lane;
 mod numbers;
 mod path;
+mod photon;
 mod schedule;
 mod shadow;
 mod stage;
@@ -34,11 +37,19 @@ pub use bdpt::{BdptIntegrator, Pyramid, Strategies, StrategyLayer};
 pub use fault::Fault;
 pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
+#[doc(hidden)]
+pub use photon::{KdTree, Nearest};
+pub use photon::{Limits, PhotonCount, PhotonIntegrator, ShownMap, SppmIntegrator};
 pub use schedule::{Progress, Silent};
 
-use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, Strategy};
+use crate::desc::{
+    Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc, Strategy,
+    Terms,
+};
 use crate::film::Film;
+use crate::material::Material;
 use crate::scene::{Scene, View};
+use photon::Stand;
 
 /// The integrators there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,11 +60,15 @@ pub enum Integrator {
     Kajiya(KajiyaIntegrator),
     /// Bidirectional path tracing, or light tracing.
     Bdpt(BdptIntegrator),
+    /// Photon mapping in two passes.
+    Photon(PhotonIntegrator),
+    /// Progressive photon mapping.
+    Sppm(SppmIntegrator),
 }
 
 impl Integrator {
     /// The names by which a scene or a command line chooses one.
-    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath"];
+    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath", "photon", "sppm"];
 
     /// The one that a scene asks for.
     pub fn from_desc(desc: &IntegratorDesc) -> Self {
@@ -92,6 +107,16 @@ impl Integrator {
                 strategies: Strategies::LightTracer,
                 fault: Fault::None,
             }),
+            IntegratorKind::Photon(parameters) => Self::Photon(PhotonIntegrator {
+                max_depth,
+                parameters,
+                shown: None,
+            }),
+            IntegratorKind::Sppm(parameters) => Self::Sppm(SppmIntegrator {
+                max_depth,
+                parameters,
+                limits: Limits::default(),
+            }),
         }
     }
 
@@ -104,11 +129,15 @@ impl Integrator {
             "kajiya" => IntegratorKind::Kajiya(KajiyaDesc::default()),
             "bdpt" => IntegratorKind::Bdpt(Heuristic::default()),
             "lightpath" => IntegratorKind::LightTracer,
+            "photon" => IntegratorKind::Photon(PhotonDesc::default()),
+            "sppm" => IntegratorKind::Sppm(SppmDesc::default()),
             _ => IntegratorKind::Path(PathDesc::default()),
         };
         let (Self::Path(PathIntegrator { max_depth, .. })
         | Self::Kajiya(KajiyaIntegrator { max_depth, .. })
-        | Self::Bdpt(BdptIntegrator { max_depth, .. })) = self;
+        | Self::Bdpt(BdptIntegrator { max_depth, .. })
+        | Self::Photon(PhotonIntegrator { max_depth, .. })
+        | Self::Sppm(SppmIntegrator { max_depth, .. })) = self;
         Self::from_desc(&IntegratorDesc {
             max_depth,
             light_sampler: LightSamplerKind::default(),
@@ -125,6 +154,8 @@ impl Integrator {
                 Strategies::All => "bdpt",
                 Strategies::LightTracer => "lightpath",
             },
+            Self::Photon(_) => "photon",
+            Self::Sppm(_) => "sppm",
         }
     }
 
@@ -135,6 +166,8 @@ impl Integrator {
             Self::Path(path) => path.max_depth = max_depth,
             Self::Kajiya(kajiya) => kajiya.max_depth = max_depth,
             Self::Bdpt(bdpt) => bdpt.max_depth = max_depth,
+            Self::Photon(photon) => photon.max_depth = max_depth,
+            Self::Sppm(sppm) => sppm.max_depth = max_depth,
         }
         self
     }
@@ -144,14 +177,79 @@ impl Integrator {
     pub fn with_strategy(self, strategy: Strategy) -> Option<Self> {
         match self {
             Self::Path(path) => Some(Self::Path(PathIntegrator { strategy, ..path })),
-            Self::Kajiya(_) | Self::Bdpt(_) => None,
+            Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) | Self::Sppm(_) => None,
         }
+    }
+
+    /// The same integrator, showing these parts of the light only. `None` if it does not take light apart.
+    #[must_use]
+    pub fn with_terms(mut self, terms: Terms) -> Option<Self> {
+        match &mut self {
+            Self::Photon(photon) => photon.parameters.terms = terms,
+            Self::Sppm(sppm) => sppm.parameters.terms = terms,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) => return None,
+        }
+        Some(self)
+    }
+
+    /// The same integrator, showing nothing but a photon map. `None` if it has none of that kind.
+    #[must_use]
+    pub fn with_shown(self, map: ShownMap) -> Option<Self> {
+        match self {
+            Self::Photon(photon) => Some(Self::Photon(PhotonIntegrator {
+                shown: Some(map),
+                ..photon
+            })),
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => None,
+        }
+    }
+
+    /// The same integrator, which may end early. `None` if it does not work in passes that make the picture better and better.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Option<Self> {
+        match self {
+            Self::Sppm(sppm) => Some(Self::Sppm(SppmIntegrator { limits, ..sppm })),
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) => None,
+        }
+    }
+
+    /// What the number of samples of a pixel is a multiple of.
+    pub fn samples_multiple(&self) -> u32 {
+        match self {
+            Self::Photon(photon) => photon.parameters.passes,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => 1,
+        }
+    }
+
+    /// Light of `scene` that it cannot find, and which integrators can, for people; `None` if it finds all.
+    pub fn blind_spot(&self, scene: &Scene) -> Option<String> {
+        let lights = scene.lights().iter().filter(|light| light.is_delta()).count();
+        if lights == 0 || !scene.materials().iter().any(Material::may_have_delta) {
+            return None;
+        }
+        let (missed, found_by) = match self {
+            Self::Path(_) | Self::Kajiya(_) => (
+                "that comes by way of mirrors or clear glass",
+                "`sppm` and `photon` find it, and `bdpt` where it is not seen by way of such surfaces again",
+            ),
+            Self::Bdpt(_) => (
+                "that comes by way of mirrors or clear glass and is seen by way of such surfaces",
+                "`sppm` and `photon` find it",
+            ),
+            Self::Photon(_) | Self::Sppm(_) => return None,
+        };
+        let whose = if lights == 1 { "a light" } else { "lights" };
+        Some(format!(
+            "`{}` cannot find the light of {whose} without extent {missed}: {found_by}",
+            self.name()
+        ))
     }
 
     /// An empty film for what it does with `view`.
     pub fn film(&self, view: &View) -> Film {
         match self {
-            Self::Path(_) | Self::Kajiya(_) => view.film(),
+            Self::Sppm(sppm) if sppm.limits.noise.is_some() => view.film().with_squares(),
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => view.film(),
             Self::Bdpt(_) => view.film().with_splats(),
         }
     }
@@ -160,7 +258,7 @@ impl Integrator {
     pub fn film_of_strategies(&self, view: &View, pyramid: Pyramid) -> Option<Film> {
         match self {
             Self::Bdpt(bdpt) => bdpt.film_of_strategies(view, pyramid),
-            Self::Path(_) | Self::Kajiya(_) => None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => None,
         }
     }
 
@@ -168,10 +266,13 @@ impl Integrator {
     /// does not depend on how many those are.
     pub fn render(&self, scene: &Scene, view: &View, film: &Film, progress: &dyn Progress) -> RenderStats {
         let start = Instant::now();
+        let samples = view.samples.clone();
         let mut stats = match self {
-            Self::Path(path) => schedule::render_tiles(scene, view, film, path, progress),
-            Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, progress),
-            Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, progress),
+            Self::Path(path) => schedule::render_tiles(scene, view, film, path, samples, progress),
+            Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, samples, progress),
+            Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, samples, progress),
+            Self::Photon(photon) => photon.render(Stand { scene, view, film }, progress),
+            Self::Sppm(sppm) => sppm.render(Stand { scene, view, film }, progress),
         };
         stats.render_time = start.elapsed();
         stats
@@ -191,6 +292,12 @@ pub struct RenderStats {
     pub bounce_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// The samples of each pixel that were rendered, if fewer than were planned.
+    pub stopped_after: Option<u32>,
+    /// Photons of caustic maps.
+    pub caustic_photons: PhotonCount,
+    /// Photons of global maps.
+    pub global_photons: PhotonCount,
     /// Samples that counted as black because they were not finite or negative.
     pub dropped_samples: u64,
     /// The first few of them, by pixel and sample.
@@ -221,6 +328,8 @@ impl RenderStats {
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
         self.shadow_rays += other.shadow_rays;
+        self.caustic_photons += other.caustic_photons;
+        self.global_photons += other.global_photons;
         self.dropped_samples += other.dropped_samples;
         self.dropped.extend(other.dropped);
         self.dropped.sort_unstable();

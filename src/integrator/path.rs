@@ -4,16 +4,14 @@
 //! With `splitting` N a path becomes N at its first scattering event that is not specular: N light samples and N BSDF samples, each
 //! with a weight of 1/N. As both techniques take the same number, the weights between them stay.
 
+use super::direct::{DirectLight, Origin};
 use super::fault::Fault;
 use super::lane::Lane;
 use super::numbers::EventNumbers;
 use super::stage::{Estimator, Stage, Vertex};
 use crate::desc::{Heuristic, Strategy};
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
-use crate::light::{LightDensity, LightEnd, LightSample};
 use crate::material::{Bsdf, Density, TransportMode};
-use crate::math::Vec3;
-use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
 use crate::scene::View;
 
 /// The path tracer.
@@ -35,17 +33,8 @@ pub struct PathIntegrator {
 const FIRST_ROULETTE_DEPTH: u32 = 2;
 
 /// From this depth on a path without limit survives with at most [`LAST_SURVIVAL`], or one between perfect mirrors would not end.
-const LAST_SURVIVAL_DEPTH: u32 = 64;
-const LAST_SURVIVAL: f32 = 0.95;
-
-/// Where a path's ray came from, which says how else the light that it meets could have been found.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Origin {
-    /// The camera or a delta lobe: in no other way.
-    Delta,
-    /// A BSDF sample with this density, at a point of this shading normal: by light sampling too.
-    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
-}
+pub(super) const LAST_SURVIVAL_DEPTH: u32 = 64;
+pub(super) const LAST_SURVIVAL: f32 = 0.95;
 
 type PathLane = Lane<Origin>;
 type PathStage<'a, 's> = Stage<'a, 's, PathIntegrator>;
@@ -73,16 +62,18 @@ impl Estimator for PathIntegrator {
     #[inline]
     fn shade<'s>(&self, stage: &mut PathStage<'_, 's>, vertex: Vertex<'_, Origin>) {
         let Vertex { lane, ray, cone, .. } = vertex;
+        let (scene, slot) = (stage.scene, &mut stage.slots[lane.slot as usize]);
         let Some(si) = vertex.surface else {
-            self.add_environment(stage, lane, ray);
+            slot.l += lane.beta * self.direct_light().environment(scene, &lane.state, ray, &slot.lambda);
             return;
         };
-        self.add_emission(stage, lane, si);
+        if let Some(le) = self.direct_light().emission(scene, &lane.state, si, &slot.lambda) {
+            slot.l += lane.beta * le;
+        }
         if self.max_depth == Some(stage.depth) {
             return;
         }
-        let lambda = &mut stage.slots[lane.slot as usize].lambda;
-        let bsdf = stage.scene.material(si.hit.geometry).bsdf(si, lambda);
+        let bsdf = scene.material(si.hit.geometry).bsdf(si, &mut slot.lambda);
         let event = Event {
             lane,
             si,
@@ -112,10 +103,14 @@ impl PathIntegrator {
     /// Looks for light from a scattering event, and goes on from it.
     #[inline]
     fn scatter(&self, stage: &mut PathStage<'_, '_>, event: &Event<'_>) {
-        if self.strategy != Strategy::Bsdf && !event.bsdf.is_delta() {
-            self.sample_light(stage, event);
-        }
         let Event { lane, si, numbers, .. } = event;
+        if self.strategy != Strategy::Bsdf && !event.bsdf.is_delta() {
+            let lambda = &stage.slots[lane.slot as usize].lambda;
+            let sample = self.direct_light().sample(stage.scene, si, event.bsdf, numbers, lambda);
+            if let Some((light, value)) = sample {
+                stage.connect(lane, si, &light, lane.beta * value);
+            }
+        }
         let sample = event
             .bsdf
             .sample_f(si.wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance);
@@ -146,94 +141,13 @@ impl PathIntegrator {
         stage.go_on(&next, &si.spawn_ray(sample.wi));
     }
 
-    /// Adds what the environment sends along a ray that left the scene.
-    fn add_environment(&self, stage: &mut PathStage<'_, '_>, lane: &PathLane, ray: &Ray) {
-        let slot = &mut stage.slots[lane.slot as usize];
-        for (id, light) in stage.scene.environments() {
-            let weight = self.weight_of_hit(lane, |p, n| {
-                let pmf = stage.scene.light_sampler().pmf(p, n, id);
-                SolidAnglePdf(pmf * light.pdf_li(p, ray.direction, ray.time).0)
-            });
-            slot.l += lane.beta * light.le(ray.origin, ray.direction, ray.time, &slot.lambda) * weight;
+    fn direct_light(&self) -> DirectLight {
+        DirectLight {
+            strategy: self.strategy,
+            heuristic: self.heuristic,
+            bsdf_samples: 1.0,
+            fault: self.fault,
         }
-    }
-
-    /// Adds what the surface that a ray hit emits.
-    #[inline]
-    fn add_emission(&self, stage: &mut PathStage<'_, '_>, lane: &PathLane, si: &SurfaceInteraction) {
-        let Some(id) = stage.scene.light_of(si.hit.geometry, si.hit.primitive) else {
-            return;
-        };
-        let light = stage.scene.light(id);
-        let slot = &mut stage.slots[lane.slot as usize];
-        let le = light.le(si, si.wo, &slot.lambda);
-        if le.is_black() {
-            return;
-        }
-        let weight = self.weight_of_hit(lane, |p, n| {
-            let pdf = stage.scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0;
-            if self.fault.is(Fault::PdfInWrongMeasure) {
-                return SolidAnglePdf(pdf * si.ng.dot(si.wo).abs() / p.distance_squared(si.p));
-            }
-            SolidAnglePdf(pdf)
-        });
-        slot.l += lane.beta * le * weight;
-    }
-
-    /// The weight of light that a lane's ray met, which light samples from point p with normal n would have found with the density
-    /// `pdf_light(p, n)`.
-    #[inline]
-    fn weight_of_hit(&self, lane: &PathLane, pdf_light: impl FnOnce(Vec3, Vec3) -> SolidAnglePdf) -> f32 {
-        match lane.state {
-            Origin::Delta => 1.0,
-            Origin::Sampled { p, n, pdf } => match self.strategy {
-                Strategy::Bsdf => 1.0,
-                Strategy::Light => 0.0,
-                Strategy::Mis => self.weight(pdf, pdf_light(p, n)),
-            },
-        }
-    }
-
-    /// The weight of a sample with density `pdf` where the other technique has the density `other`.
-    #[inline]
-    fn weight(&self, pdf: SolidAnglePdf, other: SolidAnglePdf) -> f32 {
-        if self.fault.is(Fault::LightTwice) {
-            return 1.0;
-        }
-        match self.heuristic {
-            Heuristic::Power => power_heuristic(pdf.0, other.0),
-            Heuristic::Balance => balance_heuristic(pdf.0, other.0),
-        }
-    }
-
-    /// Samples a point of a light and asks for its light.
-    #[inline]
-    fn sample_light(&self, stage: &mut PathStage<'_, '_>, event: &Event<'_>) -> Option<()> {
-        let Event { lane, si, numbers, .. } = event;
-        let chosen = stage.scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
-        let light = stage.scene.light(chosen.light);
-        let sample = light.sample_li(si.p, si.time, numbers.light, &stage.slot(lane).lambda)?;
-        let bsdf = event.bsdf.eval(si.wo, sample.wi, TransportMode::Radiance)?;
-        if bsdf.f.is_black() {
-            return None;
-        }
-        let cos = if self.fault.is(Fault::MissingCosine) {
-            1.0
-        } else {
-            bsdf.cos_theta
-        };
-        let mut factor = cos / chosen.pmf;
-        if let LightDensity::Continuous(pdf) = sample.density {
-            if self.strategy == Strategy::Mis {
-                factor *= self.weight(SolidAnglePdf(chosen.pmf * pdf.0), bsdf.pdf);
-            }
-            factor /= pdf.0;
-        }
-        if self.fault.is(Fault::WrongJacobian) {
-            factor /= cos_at_light(&sample);
-        }
-        stage.connect(lane, si, &sample, lane.beta * bsdf.f * sample.li * factor);
-        Some(())
     }
 }
 
@@ -250,12 +164,4 @@ pub(super) fn survival(depth: u32, throughput: f32, is_unlimited: bool) -> f32 {
         1.0
     };
     throughput.sqrt().min(limit)
-}
-
-/// |cos| at the point of a light; 1 where it has no surface.
-fn cos_at_light(sample: &LightSample) -> f32 {
-    match sample.end {
-        LightEnd::Point { ng, .. } if ng != Vec3::ZERO => ng.dot(sample.wi).abs(),
-        LightEnd::Point { .. } | LightEnd::Infinity => 1.0,
-    }
 }

@@ -85,15 +85,16 @@ impl<'a> TilePlace<'a> {
     }
 }
 
-/// Renders all samples of all tiles on the threads of the current rayon pool.
+/// Renders the samples `samples` of each pixel, some or all of the view's, on the threads of the current rayon pool.
 pub(super) fn render_tiles<E: Estimator>(
     scene: &Scene,
     view: &View,
     film: &Film,
     estimator: &E,
+    samples: Range<u32>,
     progress: &dyn Progress,
 ) -> RenderStats {
-    let Range { start, end } = view.samples;
+    let Range { start, end } = samples;
     let places = if E::LIGHT_PATHS {
         TilePlace::all_of(film)
     } else {
@@ -110,16 +111,18 @@ pub(super) fn render_tiles<E: Estimator>(
         })
         .collect();
     let pixels: u64 = places.iter().map(|place| place.whole.area()).sum();
-    let total = pixels * u64::from(end - start);
+    // Of all the samples that are rendered, in whatever parts.
+    let total = pixels * view.samples.len() as u64;
+    let before = pixels * u64::from(start - view.samples.start);
     let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
     let per_thread = rayon::broadcast(|_| {
         let mut wave = Wave::new(scene, view, film, estimator);
         while let Some(unit) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
             wave.render(unit.place, unit.samples.clone());
             let samples = unit.place.whole.area() * unit.samples.len() as u64;
-            progress.advance(done.fetch_add(samples, Ordering::Relaxed) + samples, total);
+            progress.advance(before + done.fetch_add(samples, Ordering::Relaxed) + samples, total);
         }
-        wave.into_stats()
+        wave.take_stats()
     });
     let mut stats = RenderStats::default();
     per_thread.into_iter().for_each(|other| stats.merge(other));

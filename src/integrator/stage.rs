@@ -14,7 +14,7 @@ use crate::light::LightSample;
 use crate::material::TransportMode;
 use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths};
 
 /// An estimator of the radiance along camera rays, one scattering event after the other; or of what light paths bring to the
 /// camera.
@@ -28,6 +28,11 @@ pub(super) trait Estimator: Sync + Sized {
 
     /// What a camera path starts with.
     fn camera_state(&self, view: &View, ray: &Ray) -> Self::State;
+
+    /// The wavelengths and the time of all paths of a pass, where they share them; else each pixel sample has its own.
+    fn moment(&self) -> Option<Moment> {
+        None
+    }
 
     /// What a wave starts with that renders to `film`.
     fn memory<'s>(&self, film: &Film) -> Self::Memory<'s> {
@@ -52,6 +57,26 @@ pub(super) trait Estimator: Sync + Sized {
 
     /// Takes a path to its next scattering event.
     fn shade<'s>(&self, stage: &mut Stage<'_, 's, Self>, vertex: Vertex<'_, Self::State>);
+}
+
+/// At which wavelengths and at which time paths are followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// Chooses the wavelengths, in [0, 1).
+    pub wavelength: f32,
+    /// Chooses the time within the shutter's opening, in [0, 1).
+    pub time: f32,
+}
+
+impl Moment {
+    /// The wavelengths that it means for transport in `color`.
+    #[inline]
+    pub fn wavelengths(&self, color: ColorMode) -> Wavelengths {
+        match color {
+            ColorMode::Spectral => Wavelengths::sample_visible(self.wavelength),
+            ColorMode::Rgb => Wavelengths::rgb(),
+        }
+    }
 }
 
 /// A wave whose paths have ended.

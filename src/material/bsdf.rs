@@ -141,6 +141,9 @@ impl LocalSample {
     }
 }
 
+/// The greatest facet slope (alpha, in either direction) of a surface that counts as specular, see [`Bsdf::is_specular`].
+pub const SPECULAR_ALPHA: f32 = 0.1;
+
 /// The lobes there are.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each is its type")]
@@ -287,6 +290,28 @@ impl<'a> Bsdf<'a> {
         match &self.lobe {
             Lobe::Layered(lobe) => lobe.has_delta(),
             _ => self.is_delta(),
+        }
+    }
+
+    /// Whether it is a mirror or a window, or nearly so: it has nothing but delta lobes and facets of [`SPECULAR_ALPHA`] at most. Light
+    /// is then better followed on its way than looked for from here; photon maps keep nothing of it.
+    pub fn is_specular(&self) -> bool {
+        match &self.lobe {
+            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Measured(_) => false,
+            Lobe::ThinDielectric(_) => true,
+            Lobe::Layered(lobe) => lobe.is_delta(),
+            Lobe::Conductor(lobe) => lobe.is_specular(),
+            Lobe::Dielectric(lobe) => lobe.is_specular(),
+            Lobe::Principled(lobe) => lobe.is_specular(),
+        }
+    }
+
+    /// The reflectance, if it is Lambertian and nothing else: `f` is that over pi for any two directions on one side.
+    #[inline]
+    pub fn lambertian_reflectance(&self) -> Option<SampledSpectrum> {
+        match (&self.lobe, &self.sides) {
+            (Lobe::Diffuse(lobe), None) => Some(lobe.albedo()),
+            _ => None,
         }
     }
 

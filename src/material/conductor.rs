@@ -27,6 +27,11 @@ impl Conductor {
         }
     }
 
+    /// See [`super::Bsdf::is_specular`].
+    pub fn is_specular(&self) -> bool {
+        self.roughness.is_none_or(|facets| facets.is_specular())
+    }
+
     /// With light that meets several facets: what is then not absorbed is not lost. Values are estimates.
     #[must_use]
     pub fn with_multiple_scattering(self, multiple: bool) -> Self {

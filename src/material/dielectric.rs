@@ -29,6 +29,11 @@ impl Dielectric {
         }
     }
 
+    /// See [`super::Bsdf::is_specular`].
+    pub fn is_specular(&self) -> bool {
+        self.roughness.is_none_or(|facets| facets.is_specular())
+    }
+
     /// With light that meets several facets: nothing is lost then. Values are estimates.
     #[must_use]
     pub fn with_multiple_scattering(self, multiple: bool) -> Self {

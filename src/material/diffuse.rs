@@ -19,6 +19,12 @@ impl Diffuse {
         Self { albedo }
     }
 
+    /// The albedo.
+    #[inline]
+    pub fn albedo(&self) -> SampledSpectrum {
+        self.albedo
+    }
+
     /// See [`Bsdf::eval`](super::Bsdf::eval).
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {

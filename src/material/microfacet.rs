@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use super::beckmann;
+use super::{SPECULAR_ALPHA, beckmann};
 use crate::math::{Vec2, Vec3};
 
 /// The shapes of distributions there are.
@@ -67,6 +67,11 @@ impl Microfacets {
     #[inline]
     pub fn alpha_from_roughness(roughness: f32) -> f32 {
         roughness.sqrt()
+    }
+
+    /// See [`super::Bsdf::is_specular`].
+    pub fn is_specular(&self) -> bool {
+        self.alpha_x.max(self.alpha_y) <= SPECULAR_ALPHA
     }
 
     /// The slopes along the two tangents.

@@ -24,7 +24,7 @@ mod sides;
 mod surface;
 mod thin_dielectric;
 
-pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, Lobe, LocalSample, LocalValue, TransportMode};
+pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, Lobe, LocalSample, LocalValue, SPECULAR_ALPHA, TransportMode};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

@@ -100,6 +100,12 @@ impl<'a> Principled<'a> {
         }
     }
 
+    /// See [`super::Bsdf::is_specular`]: metal or glass alone.
+    pub fn is_specular(&self) -> bool {
+        let (opaque, _) = self.shares();
+        opaque == 0.0 && self.p.sheen == 0.0 && self.p.clearcoat == 0.0 && self.facets.is_specular()
+    }
+
     /// The shares of opaque dielectric and of glass; the rest is metal.
     fn shares(&self) -> (f32, f32) {
         let dielectric = 1.0 - self.p.metallic;

@@ -64,8 +64,10 @@ impl Scene {
             LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
             LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights.lights),
         };
+        let moves = world.moves() || desc.lights.iter().any(|light| !light.world_from_light.is_static());
         Ok(Self {
             world,
+            moves,
             accel,
             color: options.color,
             bounds,

@@ -50,6 +50,8 @@ pub struct Scene {
     light_sampler: LightSampler,
     /// By power.
     emission_sampler: LightSampler,
+    /// Whether anything but a camera moves.
+    moves: bool,
     /// Seconds that the backend took to build.
     build_seconds: f64,
 }
@@ -91,6 +93,11 @@ impl Scene {
     /// A box around everything that can be hit.
     pub fn bounds(&self) -> Bounds3 {
         self.bounds
+    }
+
+    /// Whether any shape or light moves.
+    pub fn moves(&self) -> bool {
+        self.moves
     }
 
     /// The material of a geometry.

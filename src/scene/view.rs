@@ -45,6 +45,8 @@ pub struct ViewOverrides {
     pub crop: Option<PixelRect>,
     /// Samples a pixel.
     pub spp: Option<u32>,
+    /// What that number is rounded up to a multiple of, whoever gives it; 0 leaves it as it is.
+    pub spp_multiple: u32,
     /// Kind of sampler.
     pub sampler: Option<SamplerKind>,
     /// Only this sample of each pixel.
@@ -74,6 +76,7 @@ impl View {
             .ok_or_else(|| problem("this pixel filter is zero or integrates to zero".to_owned()))?;
         let kind = overrides.sampler.unwrap_or(view.sampler.kind);
         let spp = overrides.spp.unwrap_or(view.sampler.pixel_samples);
+        let spp = spp.checked_next_multiple_of(overrides.spp_multiple).unwrap_or(spp);
         if let Some(sample) = overrides.sample.filter(|&sample| sample >= spp) {
             return Err(Error::Usage(format!(
                 "there is no sample {sample}: a pixel has {spp}, counted from 0"

@@ -13,7 +13,7 @@ fn changed(built: &Built, change: impl FnOnce(&mut PathIntegrator)) -> Integrato
             change(&mut path);
             Integrator::Path(path)
         }
-        Integrator::Kajiya(_) | Integrator::Bdpt(_) => panic!("not a path tracer"),
+        _ => panic!("not a path tracer"),
     }
 }
 

@@ -3,8 +3,9 @@
 use clap::ValueEnum;
 
 use crate::accel::{Backend, BuildQuality};
-use crate::desc::Strategy;
+use crate::desc::{Strategy, Term};
 use crate::film::PixelRect;
+use crate::integrator::ShownMap;
 use crate::sampling::{SamplerKind, Strata};
 use crate::spectrum::ColorMode;
 
@@ -44,6 +45,48 @@ impl From<StrategyArg> for Strategy {
             StrategyArg::Bsdf => Self::Bsdf,
             StrategyArg::Light => Self::Light,
             StrategyArg::Mis => Self::Mis,
+        }
+    }
+}
+
+/// One of `--terms`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum TermArg {
+    /// Lights, and what they light straight
+    Direct,
+    /// The same, seen in mirrors and through glass
+    Specular,
+    /// What mirrors and glass throw on other surfaces
+    Caustic,
+    /// What other surfaces throw on each other
+    Indirect,
+}
+
+impl From<TermArg> for Term {
+    fn from(arg: TermArg) -> Self {
+        match arg {
+            TermArg::Direct => Self::Direct,
+            TermArg::Specular => Self::Specular,
+            TermArg::Caustic => Self::Caustic,
+            TermArg::Indirect => Self::Indirect,
+        }
+    }
+}
+
+/// `--photon-map`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum PhotonMapArg {
+    /// Of photons that come by way of mirrors and glass only
+    Caustic,
+    /// Of all photons
+    Global,
+}
+
+impl From<PhotonMapArg> for ShownMap {
+    fn from(arg: PhotonMapArg) -> Self {
+        match arg {
+            PhotonMapArg::Caustic => Self::Caustic,
+            PhotonMapArg::Global => Self::Global,
         }
     }
 }
@@ -138,6 +181,13 @@ pub(super) fn parse_finite(text: &str) -> Result<f32, String> {
         .ok()
         .filter(|x: &f32| x.is_finite())
         .ok_or_else(|| "expected a number".to_owned())
+}
+
+pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| *x > 0.0 && *x <= 1e9)
+        .ok_or_else(|| "expected a number of more than 0".to_owned())
 }
 
 /// The largest picture: 2^28 pixels.

@@ -34,13 +34,15 @@ impl Job<'_> {
         let desc = self
             .pool
             .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
-        Reporter {
+        let reporter = Reporter {
             channel: self.channel,
             scene: path,
             camera: "",
-        }
-        .warnings(&desc.warnings);
+        };
+        reporter.warnings(&desc.warnings);
+        let spp_multiple = self.integrator(&desc)?.samples_multiple();
         let overrides = ViewOverrides {
+            spp_multiple,
             resolution: args.resolution,
             crop: args.crop.or(args.pixel),
             spp: args.spp,
@@ -49,8 +51,15 @@ impl Job<'_> {
             seed: args.seed,
         };
         let mut pictures = Vec::new();
-        for view in &desc.views {
-            let view = View::build(&desc, view, args.color.into(), &overrides)?;
+        for view_desc in &desc.views {
+            let view = View::build(&desc, view_desc, args.color.into(), &overrides)?;
+            let wanted = args.spp.unwrap_or(view_desc.sampler.pixel_samples);
+            if view.sampler.samples_per_pixel() != wanted {
+                let rounded = view.sampler.samples_per_pixel();
+                reporter.say(&format!(
+                    "{rounded} samples a pixel instead of {wanted}: a multiple of {spp_multiple} passes"
+                ));
+            }
             let file = self.output_path(path, &view, desc.views.len())?;
             pictures.push(Picture {
                 output: PendingOutput::create(&file)?,
@@ -69,13 +78,11 @@ impl Job<'_> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
+        if let Some(missed) = self.integrator(&desc)?.blind_spot(&scene) {
+            reporter.say(&format!("warning: {missed}"));
+        }
         if scene.lights().is_empty() {
-            Reporter {
-                channel: self.channel,
-                scene: path,
-                camera: "",
-            }
-            .say(&format!(
+            reporter.say(&format!(
                 "warning: {} has no lights: its picture is black",
                 path.display()
             ));

@@ -2,6 +2,10 @@
 
 use super::Entry;
 use super::parameter::{FloatRange, Parameter};
+use super::samplers;
+
+/// A map of them takes some 100 bytes each.
+const MOST_PHOTONS: i32 = 100_000_000;
 
 /// What is used if none is given.
 pub static PATH: Entry = Entry::new(
@@ -19,7 +23,7 @@ pub static PATH: Entry = Entry::new(
 );
 
 /// All of them.
-pub static INTEGRATORS: [Entry; 4] = [
+pub static INTEGRATORS: [Entry; 6] = [
     PATH,
     Entry::new(
         "Integrator",
@@ -45,6 +49,35 @@ pub static INTEGRATORS: [Entry; 4] = [
         "lightpath",
         "Paths from the lights to the camera; lights seen directly from the camera to the light",
         &[&MAX_DEPTH],
+    ),
+    Entry::new(
+        "Integrator",
+        "photon",
+        "Photon mapping in two passes: caustic and global maps, final gathering",
+        &[
+            &MAX_DEPTH,
+            &LIGHT_SAMPLER,
+            &CAUSTIC_PHOTONS,
+            &GLOBAL_PHOTONS,
+            &PHOTONS_USED,
+            &MAX_DISTANCE,
+            &FINAL_GATHER_SAMPLES,
+            &PASSES,
+            &PHOTON_FILTER,
+        ],
+    ),
+    Entry::new(
+        "Integrator",
+        "sppm",
+        "Stochastic progressive photon mapping: as many passes as samples, each finer than the one before",
+        &[
+            &MAX_DEPTH,
+            &LIGHT_SAMPLER,
+            &PHOTONS_PER_ITERATION,
+            &RADIUS,
+            &PHOTON_FILTER,
+            &samplers::SEED,
+        ],
     ),
 ];
 
@@ -75,6 +108,61 @@ pub static SPLITTING: Parameter = Parameter::integer(
     (1, 1024),
     "Paths that one becomes at its first surface that is not specular",
 );
+pub static CAUSTIC_PHOTONS: Parameter = Parameter::integer(
+    "causticphotons",
+    -1,
+    (-1, MOST_PHOTONS),
+    "Photons that a pass keeps in the caustic map at most; 0 for none; -1 for 200000",
+);
+pub static GLOBAL_PHOTONS: Parameter = Parameter::integer(
+    "globalphotons",
+    -1,
+    (-1, MOST_PHOTONS),
+    "Photons that a pass keeps in the global map at most; 0 for none; -1 for 50000",
+);
+pub static PHOTONS_USED: Parameter = Parameter::integer(
+    "nused",
+    50,
+    (1, 100_000),
+    "Photons that a radiance estimate uses at most",
+);
+pub static MAX_DISTANCE: Parameter = Parameter::float(
+    "maxdist",
+    0.0,
+    FloatRange::NotNegative,
+    "How far away photons of an estimate may be; 0 for 2 % of the scene's radius",
+)
+.unit("scene units");
+pub static FINAL_GATHER_SAMPLES: Parameter = Parameter::integer(
+    "finalgathersamples",
+    32,
+    (1, 4096),
+    "Directions in which a camera sample looks for indirect light",
+);
+pub static PASSES: Parameter = Parameter::integer(
+    "passes",
+    16,
+    (1, 1 << 20),
+    "Passes, each with photons of its own; pixel samples are rounded up to a multiple of them",
+);
+pub static PHOTON_FILTER: Parameter = Parameter::choice(
+    "filter",
+    &["cone", "gaussian", "constant"],
+    "How photons count by their distance",
+);
+pub static PHOTONS_PER_ITERATION: Parameter = Parameter::integer(
+    "photonsperiteration",
+    -1,
+    (-1, MOST_PHOTONS),
+    "Photons emitted in a pass; -1 for as many as the picture has pixels",
+);
+pub static RADIUS: Parameter = Parameter::float(
+    "radius",
+    0.0,
+    FloatRange::NotNegative,
+    "Radius of the estimates of the first pass; 0 for three pixels",
+)
+.unit("scene units");
 pub static VISUALIZE_STRATEGIES: Parameter =
     Parameter::flag("visualizestrategies", false, "pbrt's; not supported if true");
 pub static VISUALIZE_WEIGHTS: Parameter = Parameter::flag("visualizeweights", false, "pbrt's; not supported if true");

@@ -2,23 +2,22 @@
 
 use super::reader::{ParamReader, unknown_type};
 use crate::desc::kinds::Parameter;
-use crate::desc::kinds::integrators as kinds;
+use crate::desc::kinds::{integrators as kinds, samplers};
 use crate::desc::{
     Distribution, Heuristic, INTEGRATORS, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc,
-    Strategy, Termination,
+    PhotonDesc, PhotonFilter, SppmDesc, Strategy, Termination, Terms,
 };
 
 /// If a file has no integrator.
 const DEFAULT_MAX_DEPTH: u32 = 5;
 
-const LATER: [&str; 7] = [
+const LATER: [&str; 6] = [
     "ambientocclusion",
     "function",
     "mlt",
     "randomwalk",
     "simplepath",
     "simplevolpath",
-    "sppm",
 ];
 
 /// Path tracing with 5 bounces, as in pbrt-v4.
@@ -51,6 +50,8 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
             let kajiya = kajiya(&mut reader, max_depth);
             (LightSamplerKind::default(), IntegratorKind::Kajiya(kajiya))
         }
+        "photon" => (light_sampler(&mut reader), IntegratorKind::Photon(photon(&mut reader))),
+        "sppm" => (light_sampler(&mut reader), IntegratorKind::Sppm(sppm(&mut reader))),
         "lightpath" => (LightSamplerKind::default(), IntegratorKind::LightTracer),
         "bdpt" => {
             for flag in [
@@ -83,6 +84,42 @@ fn path(reader: &mut ParamReader<'_>) -> PathDesc {
         heuristic: heuristic(reader),
         splitting: reader.integer_by(&kinds::SPLITTING).unsigned_abs(),
     }
+}
+
+fn photon(reader: &mut ParamReader<'_>) -> PhotonDesc {
+    PhotonDesc {
+        caustic_photons: u32::try_from(reader.integer_by(&kinds::CAUSTIC_PHOTONS)).ok(),
+        global_photons: u32::try_from(reader.integer_by(&kinds::GLOBAL_PHOTONS)).ok(),
+        used: reader.integer_by(&kinds::PHOTONS_USED).unsigned_abs(),
+        max_distance: positive(reader.float_by(&kinds::MAX_DISTANCE)),
+        final_gather_samples: reader.integer_by(&kinds::FINAL_GATHER_SAMPLES).unsigned_abs(),
+        passes: reader.integer_by(&kinds::PASSES).unsigned_abs(),
+        filter: photon_filter(reader),
+        terms: Terms::ALL,
+    }
+}
+
+fn sppm(reader: &mut ParamReader<'_>) -> SppmDesc {
+    reader.inert_by(&[&samplers::SEED]);
+    SppmDesc {
+        photons: u32::try_from(reader.integer_by(&kinds::PHOTONS_PER_ITERATION)).ok(),
+        radius: positive(reader.float_by(&kinds::RADIUS)),
+        filter: photon_filter(reader),
+        terms: Terms::ALL,
+    }
+}
+
+fn photon_filter(reader: &mut ParamReader<'_>) -> PhotonFilter {
+    match reader.choice_by(&kinds::PHOTON_FILTER) {
+        "gaussian" => PhotonFilter::Gaussian,
+        "constant" => PhotonFilter::Constant,
+        _ => PhotonFilter::Cone,
+    }
+}
+
+/// A length, unless it is 0, which asks for the program's choice.
+fn positive(length: f64) -> Option<f32> {
+    (length > 0.0).then_some(length as f32)
 }
 
 fn heuristic(reader: &mut ParamReader<'_>) -> Heuristic {

@@ -8,8 +8,9 @@
 
 use super::light_path::LightVertex;
 use super::mis::{Exponent, LightStart};
-use super::{BdptIntegrator, Event, SubpathStage, bend};
+use super::{BdptIntegrator, Event, SubpathStage};
 use crate::geometry::SurfaceInteraction;
+use crate::integrator::adjoint::bend;
 use crate::integrator::fault::Fault;
 use crate::integrator::shadow::{Contribution, NO_NOTE, shadow_ray};
 use crate::light::{EmissionDensity, Light, LightDensity, LightEnd, LightSample};

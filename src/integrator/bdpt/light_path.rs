@@ -3,8 +3,9 @@
 use super::connect::Connection;
 use super::mis::{Exponent, LightStart, Partial};
 use super::pyramid::Record;
-use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage, bend};
+use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage};
 use crate::geometry::{Ray, SurfaceInteraction};
+use crate::integrator::adjoint::bend;
 use crate::integrator::lane::Lane;
 use crate::integrator::numbers::EmissionNumbers;
 use crate::integrator::shadow::{NO_NOTE, SplatContribution};

@@ -24,6 +24,7 @@ use self::light_path::{LightVertices, light_start};
 use self::mis::{Exponent, Partial};
 use self::pyramid::Record;
 pub use self::pyramid::{Pyramid, StrategyLayer};
+use super::adjoint::adjoint_correction;
 use super::fault::Fault;
 use super::lane::Lane;
 use super::numbers::EventNumbers;
@@ -270,18 +271,11 @@ impl BdptIntegrator {
         }
     }
 
-    /// What takes the BSDF of a shading normal to its adjoint, for light that arrives from `si.wo` and goes on into `wi` (Veach 1997,
-    /// section 5.3.2): 1 where the two normals are the same. The shading normal is the BSDF's, which maps may have bent.
+    /// See [`adjoint_correction`].
     fn adjoint_correction(&self, si: &SurfaceInteraction, bsdf: &Bsdf, wi: Vec3) -> f32 {
         if self.fault.is(Fault::AdjointForgotten) {
             return 1.0;
         }
-        let correction = bend(si.ng, bsdf, wi) / bend(si.ng, bsdf, si.wo);
-        if correction.is_finite() { correction } else { 0.0 }
+        adjoint_correction(si, bsdf, wi)
     }
-}
-
-/// |cos| of `w` to the geometric normal over that to the shading normal.
-fn bend(ng: Vec3, bsdf: &Bsdf, w: Vec3) -> f32 {
-    ng.dot(w).abs() / bsdf.abs_cos(w)
 }

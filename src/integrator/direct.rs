@@ -1,0 +1,143 @@
+//! Light straight from its source, found in two ways that are weighed by multiple importance sampling (Veach 1997, section 9.2): by
+//! points of lights, and by directions drawn from BSDFs that meet a light.
+
+use super::fault::Fault;
+use super::numbers::EventNumbers;
+use crate::desc::{Heuristic, Strategy};
+use crate::geometry::{Ray, SurfaceInteraction};
+use crate::light::{LightDensity, LightEnd, LightSample};
+use crate::material::{Bsdf, TransportMode};
+use crate::math::Vec3;
+use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
+use crate::scene::Scene;
+use crate::spectrum::{SampledSpectrum, Wavelengths};
+
+/// Where a path's ray came from, which says how else the light that it meets could have been found.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin {
+    /// The camera or a delta lobe: in no other way.
+    Delta,
+    /// A BSDF sample at a point of this shading normal: by light sampling too. `pdf` is its density, times the number of such samples.
+    Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
+}
+
+/// How light is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectLight {
+    pub strategy: Strategy,
+    pub heuristic: Heuristic,
+    /// BSDF samples for each light sample at a point.
+    pub bsdf_samples: f32,
+    pub fault: Fault,
+}
+
+impl DirectLight {
+    /// What the environment sends along a ray that left the scene, weighed against light samples.
+    #[inline]
+    pub fn environment(&self, scene: &Scene, origin: &Origin, ray: &Ray, lambda: &Wavelengths) -> SampledSpectrum {
+        let mut l = SampledSpectrum::ZERO;
+        for (id, light) in scene.environments() {
+            let weight = self.weight_of_hit(origin, |p, n| {
+                let pmf = scene.light_sampler().pmf(p, n, id);
+                SolidAnglePdf(pmf * light.pdf_li(p, ray.direction, ray.time).0)
+            });
+            l += light.le(ray.origin, ray.direction, ray.time, lambda) * weight;
+        }
+        l
+    }
+
+    /// What the surface that a ray hit emits, weighed against light samples.
+    #[inline]
+    pub fn emission(
+        &self,
+        scene: &Scene,
+        origin: &Origin,
+        si: &SurfaceInteraction,
+        lambda: &Wavelengths,
+    ) -> Option<SampledSpectrum> {
+        let id = scene.light_of(si.hit.geometry, si.hit.primitive)?;
+        let light = scene.light(id);
+        let le = light.le(si, si.wo, lambda);
+        if le.is_black() {
+            return None;
+        }
+        let weight = self.weight_of_hit(origin, |p, n| {
+            let pdf = scene.light_sampler().pmf(p, n, id) * light.pdf_li(p, si).0;
+            if self.fault.is(Fault::PdfInWrongMeasure) {
+                return SolidAnglePdf(pdf * si.ng.dot(si.wo).abs() / p.distance_squared(si.p));
+            }
+            SolidAnglePdf(pdf)
+        });
+        Some(le * weight)
+    }
+
+    /// A point of a light, and what it sends by way of `bsdf` if nothing is between, weighed against BSDF samples.
+    #[inline]
+    pub fn sample(
+        &self,
+        scene: &Scene,
+        si: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        numbers: &EventNumbers,
+        lambda: &Wavelengths,
+    ) -> Option<(LightSample, SampledSpectrum)> {
+        let chosen = scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
+        let light = scene.light(chosen.light);
+        let sample = light.sample_li(si.p, si.time, numbers.light, lambda)?;
+        let bsdf = bsdf.eval(si.wo, sample.wi, TransportMode::Radiance)?;
+        if bsdf.f.is_black() {
+            return None;
+        }
+        let cos = if self.fault.is(Fault::MissingCosine) {
+            1.0
+        } else {
+            bsdf.cos_theta
+        };
+        let mut factor = cos / chosen.pmf;
+        if let LightDensity::Continuous(pdf) = sample.density {
+            if self.strategy == Strategy::Mis {
+                let of_bsdf = SolidAnglePdf(self.bsdf_samples * bsdf.pdf.0);
+                factor *= self.weight(SolidAnglePdf(chosen.pmf * pdf.0), of_bsdf);
+            }
+            factor /= pdf.0;
+        }
+        if self.fault.is(Fault::WrongJacobian) {
+            factor /= cos_at_light(&sample);
+        }
+        Some((sample, bsdf.f * sample.li * factor))
+    }
+
+    /// The weight of light that a ray met, which light samples from point p with normal n would have found with the density
+    /// `pdf_light(p, n)`.
+    #[inline]
+    fn weight_of_hit(&self, origin: &Origin, pdf_light: impl FnOnce(Vec3, Vec3) -> SolidAnglePdf) -> f32 {
+        match *origin {
+            Origin::Delta => 1.0,
+            Origin::Sampled { p, n, pdf } => match self.strategy {
+                Strategy::Bsdf => 1.0,
+                Strategy::Light => 0.0,
+                Strategy::Mis => self.weight(pdf, pdf_light(p, n)),
+            },
+        }
+    }
+
+    /// The weight of a sample with density `pdf` where the other technique has the density `other`, each times its number of samples.
+    #[inline]
+    fn weight(&self, pdf: SolidAnglePdf, other: SolidAnglePdf) -> f32 {
+        if self.fault.is(Fault::LightTwice) {
+            return 1.0;
+        }
+        match self.heuristic {
+            Heuristic::Power => power_heuristic(pdf.0, other.0),
+            Heuristic::Balance => balance_heuristic(pdf.0, other.0),
+        }
+    }
+}
+
+/// |cos| at the point of a light; 1 where it has no surface.
+fn cos_at_light(sample: &LightSample) -> f32 {
+    match sample.end {
+        LightEnd::Point { ng, .. } if ng != Vec3::ZERO => ng.dot(sample.wi).abs(),
+        LightEnd::Point { .. } | LightEnd::Infinity => 1.0,
+    }
+}

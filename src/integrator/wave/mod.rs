@@ -1,0 +1,202 @@
+//! A wave: the paths of one tile, at one sample index or several, that go through each stage together.
+//!
+//! A *slot* is a pixel sample; it stays until its last shadow ray is back, then is turned into sensor values and retires. A *lane*
+//! is a live path, and names its slot. The lanes that go on after a stage make up the next batch. Where paths branch they are
+//! several; the last one goes first, so that their number stays in proportion to the depth of paths. If the estimator has light
+//! paths, one for each slot, all of a wave go before its camera paths.
+//!
+//! Waves begin in `camera.rs` and `light.rs`, and end in `retire.rs`.
+
+mod camera;
+mod light;
+mod retire;
+
+use std::ops::Range;
+use std::time::Instant;
+
+use self::camera::Pixels;
+use super::RenderStats;
+use super::lane::{Batch, NO_SLOT, Slot};
+use super::numbers::EventLanes;
+use super::schedule::TilePlace;
+use super::shadow::{Contribution, ShadowQueue, SplatContribution};
+use super::stage::{Estimator, Stage, Vertex};
+use crate::accel::RayKind;
+use crate::film::{Film, Splat, TILE_SIZE};
+use crate::geometry::{HitPacket, LANES, SurfaceLanes};
+use crate::material::TransportMode;
+use crate::math::Vectorizer;
+use crate::scene::{Scene, View};
+
+/// Lanes of a batch, which a wave is filled up to with several sample indices where a tile is small.
+pub(super) const WAVE_LANES: u32 = TILE_SIZE * TILE_SIZE;
+
+/// The paths that a thread is working on.
+pub(super) struct Wave<'s, E: Estimator> {
+    scene: &'s Scene,
+    view: &'s View,
+    film: &'s Film,
+    estimator: &'s E,
+    /// Whether whole tiles are rendered, as packets' answers depend on all their lanes.
+    whole_tiles: bool,
+    vectorizer: Vectorizer,
+    slots: Vec<Slot>,
+    memory: E::Memory<'s>,
+    /// Batches to come, the next one last.
+    pending: Vec<Batch<E::State>>,
+    /// Batches whose memory can be used again.
+    spare: Vec<Batch<E::State>>,
+    hits: Vec<HitPacket>,
+    surfaces: SurfaceLanes,
+    shadows: ShadowQueue<Contribution>,
+    splats: ShadowQueue<SplatContribution>,
+    /// What light paths have brought to the film.
+    landed: Vec<SplatContribution>,
+    splatted: Vec<Splat>,
+    stats: RenderStats,
+}
+
+impl<'s, E: Estimator> Wave<'s, E> {
+    pub fn new(scene: &'s Scene, view: &'s View, film: &'s Film, estimator: &'s E) -> Self {
+        let accel = scene.accel();
+        let independent = |kind| accel.is_mate_independent(kind);
+        Self {
+            scene,
+            view,
+            film,
+            estimator,
+            whole_tiles: !(independent(RayKind::Bounce) && independent(RayKind::Shadow)),
+            vectorizer: Vectorizer::default(),
+            slots: Vec::new(),
+            memory: estimator.memory(film),
+            pending: Vec::new(),
+            spare: Vec::new(),
+            hits: Vec::new(),
+            surfaces: SurfaceLanes::default(),
+            shadows: ShadowQueue::default(),
+            splats: ShadowQueue::default(),
+            landed: Vec::new(),
+            splatted: Vec::new(),
+            stats: RenderStats::default(),
+        }
+    }
+
+    /// What was done since the last time.
+    pub fn take_stats(&mut self) -> RenderStats {
+        std::mem::take(&mut self.stats)
+    }
+
+    /// Renders the samples `samples` of a tile.
+    pub fn render(&mut self, place: TilePlace<'_>, samples: Range<u32>) {
+        let pixels = Pixels {
+            wanted: place.wanted,
+            traced: self.traced_rect(place.wanted),
+            light: if E::LIGHT_PATHS { place.whole } else { place.wanted },
+        };
+        let at_once = if self.whole_tiles {
+            1
+        } else {
+            (u64::from(WAVE_LANES) / pixels.all().area()).max(1) as u32
+        };
+        for first in samples.clone().step_by(at_once as usize) {
+            let camera_rays = self.generate(&pixels, first..(first + at_once).min(samples.end));
+            if E::LIGHT_PATHS {
+                self.emit();
+                self.finish_pending();
+            }
+            self.pending.push(camera_rays);
+            self.finish_pending();
+            self.retire(place.tile);
+        }
+    }
+
+    /// Takes all paths to their ends.
+    fn finish_pending(&mut self) {
+        while let Some(batch) = self.pending.pop() {
+            self.trace(&batch);
+            self.shade(&batch);
+            self.spare.push(batch);
+        }
+    }
+
+    /// The stage of paths after `depth` scattering events, which collects those that will have had `next` of them.
+    fn stage(&mut self, mode: TransportMode, depth: u32, next: u32) -> Stage<'_, 's, E> {
+        let mut stage = Stage {
+            scene: self.scene,
+            view: self.view,
+            mode,
+            depth,
+            slots: &mut self.slots,
+            memory: &mut self.memory,
+            shadows: &mut self.shadows,
+            splats: &mut self.splats,
+            landed: &mut self.landed,
+            pending: &mut self.pending,
+            spare: &mut self.spare,
+            next: Batch::default(),
+        };
+        stage.start_batch(next);
+        stage
+    }
+
+    /// Finds what the ray of each lane hits.
+    fn trace(&mut self, batch: &Batch<E::State>) {
+        let kind = if batch.depth == 0 && batch.mode == TransportMode::Radiance {
+            RayKind::Camera
+        } else {
+            RayKind::Bounce
+        };
+        let rays = batch.rays.packets();
+        if self.hits.len() < rays.len() {
+            self.hits.resize(rays.len(), HitPacket::EMPTY);
+        }
+        let start = Instant::now();
+        self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
+        self.stats.backend_time += start.elapsed();
+        if kind == RayKind::Bounce {
+            self.stats.bounce_rays += batch.lanes.len() as u64;
+        }
+    }
+
+    /// Shades each lane, collects those that go on, and brings home what lights send.
+    fn shade(&mut self, batch: &Batch<E::State>) {
+        let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
+        let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
+        let mut surfaces = std::mem::take(&mut self.surfaces);
+        let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
+        let packets = batch.rays.packets().iter().zip(&hits);
+        for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
+            surfaces.fill(scene.world(), rays, hits);
+            let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
+            let numbers = EventLanes::draw(vectorizer, &streams, batch.depth);
+            for (i, lane) in mates.iter().enumerate() {
+                if lane.slot == NO_SLOT || !rays.is_active(i) {
+                    continue;
+                }
+                let ray = &rays.get(i);
+                let numbers = &numbers.get(i);
+                let mut si;
+                let (mut surface, mut cone) = (None, lane.cone);
+                if let Some(hit) = hits.get(i) {
+                    let behind = scene.interaction_behind(ray, hit, hits.t[i]);
+                    si = behind.unwrap_or_else(|| surfaces.get(scene.world(), i, ray, hit));
+                    cone = cone.after(si.p.distance(ray.origin));
+                    si.footprint = cone.width;
+                    surface = Some(&si);
+                }
+                let vertex = Vertex {
+                    lane,
+                    ray,
+                    surface,
+                    cone,
+                    numbers,
+                };
+                estimator.shade(&mut stage, vertex);
+            }
+            stage.limit_shadows(&mut stats);
+        }
+        stage.finish_batch();
+        stage.flush_shadows(&mut stats);
+        (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
+    }
+}
