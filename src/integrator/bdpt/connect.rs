@@ -41,13 +41,13 @@ impl BdptIntegrator {
         stage.memory.arrange();
         let mut connections = std::mem::take(&mut stage.memory.connections);
         connections.clear();
-        if let Some(connection) = self.to_light(stage, event) {
+        if let Some(connection) = self.light_connection(stage, event) {
             connections.push(connection);
         }
         for (seat, vertex) in stage.memory.of(slot) {
             if self.allows(stage.depth + seat.depth + 2)
                 && seat.may_see(event.si.p)
-                && let Some(connection) = self.to_light_vertex(event, vertex, seat.depth + 2)
+                && let Some(connection) = self.vertex_connection(event, vertex, seat.depth + 2)
             {
                 connections.push(connection);
             }
@@ -91,7 +91,7 @@ impl BdptIntegrator {
     }
 
     /// s = 1.
-    fn to_light(&self, stage: &mut SubpathStage<'_, '_>, event: &Event<'_, '_>) -> Option<Connection> {
+    fn light_connection(&self, stage: &mut SubpathStage<'_, '_>, event: &Event<'_, '_>) -> Option<Connection> {
         let Event {
             lane,
             si,
@@ -131,7 +131,7 @@ impl BdptIntegrator {
     }
 
     /// s > 1.
-    fn to_light_vertex(&self, event: &Event<'_, '_>, light: &LightVertex<'_>, s: u32) -> Option<Connection> {
+    fn vertex_connection(&self, event: &Event<'_, '_>, light: &LightVertex<'_>, s: u32) -> Option<Connection> {
         let Event { lane, si, bsdf, .. } = event;
         let to_light: Vec3 = light.p - si.p;
         let distance_squared = to_light.length_squared();
