@@ -3,8 +3,8 @@
 //! Contributions are noted beside those of the picture, and count if the same shadow rays arrive. Connections that Russian roulette leaves
 //! out of the picture have shadow rays too, for the layers without weights.
 //!
-//! Lights seen directly are left to s = 0. That a light could be connected to the lens instead (s = t = 1), light by light, would
-//! find nothing more: such a connection is worth something only where lights are too small to be met, and those are not seen.
+//! Connecting a light to the lens directly (s = t = 1) is no strategy, as in pbrt-v4: lights seen directly are left to s = 0, which finds all
+//! that have an extent, and others are not seen.
 
 use super::BdptIntegrator;
 use crate::film::{Film, Splat, lock};
