@@ -1,6 +1,7 @@
-"""Measures relMSE at equal processor time: ways of choosing lights, samplers, colour modes. Prints the tables of docs/measurements.md.
+"""Measures relMSE at equal processor time: ways of choosing lights, samplers, colour modes, integrators. Prints the tables of
+docs/measurements.md, or those named.
 
-    python3 tools/equal_time.py target/release/lucerna
+    python3 tools/equal_time.py target/release/lucerna [lights] [samplers] [colours] [integrators]
 
 Each configuration is rendered with the same number of samples on one thread, by five seeds; its error is scaled to the time of
 the first one (error times time is what a Monte Carlo estimator keeps). Time is the median of three runs' processor time, less
@@ -37,7 +38,7 @@ class Bench:
         arguments = ["render", scene or self.scene, "-o", output, "--resolution", self.resolution, "--spp", samples]
         return self.run(*arguments, "--seed", seed, "--threads", 1, "--quiet", *options)[1]
 
-    def table(self, title, samples, reference_samples, cases):
+    def table(self, title, samples, reference_samples, cases, reference_integrator=None):
         """`cases`: name, options, scene or None, whether it has a reference of its own (or the first one's)."""
         print(f"\n{title}\n\n| | samples in that time | relMSE at equal time | relative |\n|---|---|---|---|")
         reference = self.directory / "reference.exr"
@@ -46,6 +47,8 @@ class Bench:
         for i, (name, options, scene, own_reference) in enumerate(cases):
             if i == 0 or own_reference:
                 others = options[: options.index("--sampler")]
+                if reference_integrator:
+                    others = ["--integrator", reference_integrator]
                 self.render(reference, reference_samples, 999, [*others, "--sampler", "sobol"], scene)
             start = self.render(picture, 1, 0, options, scene)
             times = [self.render(picture, samples, 0, options, scene) - start for _ in range(3)]
@@ -71,20 +74,60 @@ def with_light_sampler(name, directory):
     return path
 
 
+def cornell_box_with_glass(directory):
+    """The Cornell box with a sphere of glass for the short block."""
+    text = (SCENES / "cornell-box.pbrt").read_text()
+    before, rest = text.split("# Short block.")
+    sphere = """AttributeBegin
+    Material "dielectric" "float eta" 1.5
+    Translate 185 85 169
+    Shape "sphere" "float radius" 85
+AttributeEnd
+"""
+    path = pathlib.Path(directory) / "cornell-box-glass.pbrt"
+    path.write_text(before + sphere + "# Tall block." + rest.split("# Tall block.")[1])
+    return path
+
+
+def lights(program, directory):
+    bench = Bench(program, None, "96x54", directory)
+    cases = [(name, ["--sampler", "sobol"], with_light_sampler(name, directory), False) for name in ["bvh", "power", "uniform"]]
+    bench.table("Choice of lights, `many-lights`, 96 x 54 pixels", 16, 1024, cases)
+
+
+def samplers(program, directory):
+    box = Bench(program, SCENES / "cornell-box.pbrt", "64x64", directory)
+    cases = [(name, ["--sampler", name], None, False) for name in ["sobol", "zsobol", "halton", "stratified", "independent"]]
+    box.table("Samplers, `cornell-box`, 64 x 64 pixels", 64, 2048, cases)
+
+
+def colours(program, directory):
+    box = Bench(program, SCENES / "cornell-box.pbrt", "64x64", directory)
+    cases = [(name, ["--color", name, "--sampler", "sobol"], None, True) for name in ["spectral", "rgb"]]
+    box.table("Colour modes, `cornell-box`, 64 x 64 pixels, each against a reference of its own", 64, 2048, cases)
+
+
+def integrators(program, directory):
+    """Some light only `bdpt` finds: it has rendered all references."""
+    glass = cornell_box_with_glass(directory)
+    scenes = [SCENES / "cornell-box.pbrt", glass, SCENES / "glass-and-mirror.pbrt", SCENES / "indirect.pbrt", SCENES / "sky.pbrt"]
+    for scene, reference_samples in zip(scenes, [1024, 1024, 1024, 1024, 512]):
+        bench = Bench(program, scene, "64x64", directory)
+        cases = [(name, ["--integrator", name, "--sampler", "zsobol"], None, False) for name in ["path", "lightpath", "bdpt"]]
+        bench.table(f"Integrators, `{scene.stem}`, 64 x 64 pixels", 32, reference_samples, cases, "bdpt")
+
+
+TABLES = {"lights": lights, "samplers": samplers, "colours": colours, "integrators": integrators}
+
+
 def main():
-    if len(sys.argv) != 2:
+    names = sys.argv[2:] or list(TABLES)
+    if len(sys.argv) < 2 or not set(names) <= set(TABLES):
         sys.exit(__doc__)
     program = str(pathlib.Path(sys.argv[1]).resolve())
     with tempfile.TemporaryDirectory() as directory:
-        lights = Bench(program, None, "96x54", directory)
-        names = ["bvh", "power", "uniform"]
-        cases = [(name, ["--sampler", "sobol"], with_light_sampler(name, directory), False) for name in names]
-        lights.table("Choice of lights, `many-lights`, 96 x 54 pixels", 16, 1024, cases)
-        box = Bench(program, SCENES / "cornell-box.pbrt", "64x64", directory)
-        samplers = [(name, ["--sampler", name], None, False) for name in ["sobol", "zsobol", "halton", "stratified", "independent"]]
-        box.table("Samplers, `cornell-box`, 64 x 64 pixels", 64, 2048, samplers)
-        modes = [(name, ["--color", name, "--sampler", "sobol"], None, True) for name in ["spectral", "rgb"]]
-        box.table("Colour modes, `cornell-box`, 64 x 64 pixels, each against a reference of its own", 64, 2048, modes)
+        for name in names:
+            TABLES[name](program, directory)
 
 
 main()

@@ -14,10 +14,7 @@ impl FilterKind {
         match *self {
             Self::Box => 1.0,
             Self::Triangle => radius - x,
-            Self::Gaussian { sigma } => {
-                let gaussian = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();
-                gaussian(x) - gaussian(radius)
-            }
+            Self::Gaussian { sigma } => gaussian(x, sigma) - gaussian(radius, sigma),
             Self::Mitchell { b, c } => mitchell(2.0 * x / radius, b, c),
             Self::LanczosSinc { tau } => sinc(x) * sinc(x / tau),
             Self::BlackmanHarris => {
@@ -26,6 +23,10 @@ impl FilterKind {
             }
         }
     }
+}
+
+fn gaussian(x: f64, sigma: f64) -> f64 {
+    (-x * x / (2.0 * sigma * sigma)).exp()
 }
 
 /// The piecewise cubic of Mitchell and Netravali on [0, 2].
@@ -65,6 +66,8 @@ pub struct PixelFilter {
 struct FilterAxis {
     radius: f64,
     integral: f64,
+    /// What a Gaussian is lowered by, to be 0 at the radius.
+    lowered: f64,
     /// A bound of the magnitude of the value over the integral.
     peak: f64,
     /// For filters without a closed-form inverse: proposals in proportion to |value|, nearly.
@@ -154,6 +157,10 @@ impl FilterAxis {
         Some(Self {
             radius,
             integral,
+            lowered: match kind {
+                FilterKind::Gaussian { sigma } => gaussian(radius, sigma),
+                _ => 0.0,
+            },
             peak,
             table,
         })
@@ -162,7 +169,11 @@ impl FilterAxis {
     /// The filter's value over its integral.
     #[inline]
     fn evaluate(&self, kind: FilterKind, x: f64) -> f64 {
-        kind.evaluate(x, self.radius) / self.integral
+        let value = match kind {
+            FilterKind::Gaussian { sigma } if x.abs() <= self.radius => gaussian(x, sigma) - self.lowered,
+            _ => kind.evaluate(x, self.radius),
+        };
+        value / self.integral
     }
 
     /// An offset, and the filter's value over its integral and the density.

@@ -92,6 +92,18 @@ impl Sensor {
     /// responses. Negative where the colour lies outside of the space.
     #[inline]
     pub fn to_rgb(&self, l: SampledSpectrum, lambda: &Wavelengths) -> [f32; 3] {
+        self.to_rgb_within(l, lambda, self.max_component)
+    }
+
+    /// The same of what a light path brings to a picture of `pixels` pixels, for a unit area of film. Where there are as many light paths
+    /// as camera samples, a `pixels`-th of it counts as much as a sample: that is what the limit is for, as in pbrt-v4.
+    #[inline]
+    pub fn splat_to_rgb(&self, l: SampledSpectrum, lambda: &Wavelengths, pixels: f32) -> [f32; 3] {
+        self.to_rgb_within(l, lambda, self.max_component * pixels)
+    }
+
+    #[inline]
+    fn to_rgb_within(&self, l: SampledSpectrum, lambda: &Wavelengths, max_component: f32) -> [f32; 3] {
         let mut sensor = match &self.response {
             Response::Lanes(matrix) => *matrix * Vec3::new(l.0[0], l.0[1], l.0[2]),
             Response::Observer => {
@@ -104,8 +116,8 @@ impl Sensor {
             }
         };
         let largest = sensor.max_element() * self.imaging_ratio;
-        if largest > self.max_component {
-            sensor *= self.max_component / largest;
+        if largest > max_component {
+            sensor *= max_component / largest;
         }
         (self.rgb_from_sensor * sensor).into()
     }

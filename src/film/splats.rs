@@ -35,7 +35,7 @@ struct Footprints {
     /// Values of the filter along the axes.
     values: Vec<f64>,
     /// Tile and footprint, wherever they meet.
-    by_tile: Vec<(u32, u32)>,
+    meetings: Vec<(u32, u32)>,
 }
 
 impl Film {
@@ -59,13 +59,12 @@ impl Film {
                 dropped += 1;
             }
         }
-        footprints.by_tile.sort_unstable();
-        for group in footprints.by_tile.chunk_by(|a, b| a.0 == b.0) {
-            let mut tile = lock(&self.tiles()[group[0].0 as usize]);
-            for &(_, index) in group {
+        footprints.each_by_tile(self.tiles().len(), |tile, of_tile| {
+            let mut tile = lock(&self.tiles()[tile]);
+            for &index in of_tile {
                 footprints.add(&mut tile, &footprints.list[index as usize]);
             }
-        }
+        });
         dropped
     }
 
@@ -113,7 +112,7 @@ impl Footprints {
             x1: columns.end,
             y1: rows.end,
         };
-        self.by_tile.extend(film.tiles_of(pixels).map(|tile| (tile, index)));
+        self.meetings.extend(film.tiles_of(pixels).map(|tile| (tile, index)));
         self.list.push(Footprint {
             pixels,
             rgb: splat.rgb.map(f64::from),
@@ -123,6 +122,32 @@ impl Footprints {
         self.values
             .extend(columns.map(|i| filter.evaluate_axis(0, x - center(i))));
         self.values.extend(rows.map(|i| filter.evaluate_axis(1, y - center(i))));
+    }
+
+    /// Calls `f` with each tile that has some, and those. (They are counted, not compared: there are thousands for each wave.)
+    fn each_by_tile(&self, tiles: usize, mut f: impl FnMut(usize, &[u32])) {
+        let mut ends = vec![0_u32; tiles];
+        for &(tile, _) in &self.meetings {
+            ends[tile as usize] += 1;
+        }
+        let mut first = 0;
+        for end in &mut ends {
+            first += std::mem::replace(end, first);
+        }
+        let mut sorted = vec![0; self.meetings.len()];
+        for &(tile, index) in &self.meetings {
+            let end = &mut ends[tile as usize];
+            sorted[*end as usize] = index;
+            *end += 1;
+        }
+        let mut first = 0;
+        for (tile, &end) in ends.iter().enumerate() {
+            let of_tile = &sorted[first..end as usize];
+            first = end as usize;
+            if !of_tile.is_empty() {
+                f(tile, of_tile);
+            }
+        }
     }
 
     /// Adds what a footprint has in a tile.

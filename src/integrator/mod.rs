@@ -10,7 +10,7 @@
 //! | 0 | film x, film y, lens, lens |
 //! | 1 | wavelength, time |
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
-//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
+//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, which connections (bdpt), at scattering event d |
 //!
 //! A photon has a stream of its own, by pass and kind of photon, with the groups of a light path; the wavelengths and the time of a pass are the
 //! same for all its photons and camera paths. A direction of a final gather has a branch of its sample's numbers.

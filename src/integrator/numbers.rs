@@ -25,6 +25,8 @@ pub(super) struct EventNumbers {
     pub bsdf: Vec2,
     /// Which lobe.
     pub lobe: f32,
+    /// Which connections are made of those that could be.
+    pub connections: f32,
 }
 
 impl EventNumbers {
@@ -35,13 +37,14 @@ impl EventNumbers {
     }
 
     #[inline]
-    fn new([light_x, light_y, which_light, roulette]: [f32; 4], [bsdf_x, bsdf_y, lobe, _]: [f32; 4]) -> Self {
+    fn new([light_x, light_y, which_light, roulette]: [f32; 4], [bsdf_x, bsdf_y, lobe, connections]: [f32; 4]) -> Self {
         Self {
             light: Vec2::new(light_x, light_y),
             which_light,
             roulette,
             bsdf: Vec2::new(bsdf_x, bsdf_y),
             lobe,
+            connections,
         }
     }
 }

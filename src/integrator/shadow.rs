@@ -22,14 +22,21 @@ pub(super) fn shadow_ray(si: &SurfaceInteraction, wi: Vec3, end: LightEnd) -> Ra
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
     pub slot: u32,
+    /// See [`Estimator::arrived`](super::stage::Estimator::arrived), or [`NO_NOTE`].
+    pub note: u32,
     pub value: SampledSpectrum,
 }
+
+/// Of a contribution that its estimator has not noted.
+pub(super) const NO_NOTE: u32 = u32::MAX;
 
 /// What a light path brings to a place of the film if a shadow ray is not blocked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SplatContribution {
     /// Whose wavelengths it has.
     pub slot: u32,
+    /// As [`Contribution::note`].
+    pub note: u32,
     /// In pixels of the whole picture; may be outside of it by the radius of the filter.
     pub film: Vec2,
     /// Spectral radiance, to be divided by the number of all light paths.

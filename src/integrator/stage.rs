@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::RenderStats;
 use super::lane::{Batch, Lane, Slot};
 use super::numbers::EventNumbers;
-use super::shadow::{Contribution, ShadowQueue, SplatContribution, shadow_ray};
+use super::shadow::{Contribution, NO_NOTE, ShadowQueue, SplatContribution, shadow_ray};
 use super::wave::WAVE_LANES;
 use crate::film::{Film, TileSums};
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
@@ -45,6 +45,11 @@ pub(super) trait Estimator: Sync + Sized {
         let _ = (memory, wave);
     }
 
+    /// A contribution with this note was not blocked: what the estimator noted of it in `memory` counts.
+    fn arrived(memory: &mut Self::Memory<'_>, note: u32) {
+        let _ = (memory, note);
+    }
+
     /// Starts the light path of a slot.
     fn emit<'s>(&self, stage: &mut Stage<'_, 's, Self>, slot: u32, stream: SampleStream) {
         let _ = (stage, slot, stream);
@@ -76,7 +81,6 @@ impl Moment {
 
 /// A wave whose paths have ended.
 pub(super) struct Retiring<'a> {
-    pub scene: &'a Scene,
     pub view: &'a View,
     pub film: &'a Film,
     pub slots: &'a [Slot],
@@ -161,16 +165,17 @@ impl<E: Estimator> Stage<'_, '_, E> {
         light: &LightSample,
         value: SampledSpectrum,
     ) {
-        self.add_unless_occluded(lane.slot, &shadow_ray(si, light.wi, light.end), value);
+        let (slot, note) = (lane.slot, NO_NOTE);
+        self.add_unless_occluded(&shadow_ray(si, light.wi, light.end), Contribution { slot, note, value });
     }
 
-    /// Adds `value` to a slot if nothing is in the way of `ray`.
+    /// Adds a contribution to its slot if nothing is in the way of `ray`.
     #[inline]
-    pub fn add_unless_occluded(&mut self, slot: u32, ray: &Ray, value: SampledSpectrum) {
+    pub fn add_unless_occluded(&mut self, ray: &Ray, contribution: Contribution) {
         if ray.is_valid() {
-            self.shadows.push(ray, Contribution { slot, value });
+            self.shadows.push(ray, contribution);
         } else {
-            self.slots[slot as usize].broken = true;
+            self.slots[contribution.slot as usize].broken = true;
         }
     }
 
@@ -209,10 +214,18 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Traces all shadow rays.
     pub(super) fn flush_shadows(&mut self, stats: &mut RenderStats) {
         stats.shadow_rays += (self.shadows.len() + self.splats.len()) as u64;
-        let (slots, landed) = (&mut *self.slots, &mut *self.landed);
-        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, value }| {
+        let (slots, landed, memory) = (&mut *self.slots, &mut *self.landed, &mut *self.memory);
+        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, note, value }| {
             slots[slot as usize].l += value;
+            if note != NO_NOTE {
+                E::arrived(memory, note);
+            }
         });
-        stats.backend_time += self.splats.flush(self.scene, |splat| landed.push(splat));
+        stats.backend_time += self.splats.flush(self.scene, |splat| {
+            landed.push(splat);
+            if splat.note != NO_NOTE {
+                E::arrived(memory, splat.note);
+            }
+        });
     }
 }

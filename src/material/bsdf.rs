@@ -18,6 +18,18 @@ pub enum TransportMode {
     Importance,
 }
 
+impl TransportMode {
+    /// What travels along the path, seen from its other end.
+    #[inline]
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Radiance => Self::Importance,
+            Self::Importance => Self::Radiance,
+        }
+    }
+}
+
 /// How likely a sampled direction was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Density {
@@ -346,6 +358,25 @@ impl<'a> Bsdf<'a> {
             pdf: SolidAnglePdf(value.pdf),
             cos_theta: wi.z.abs(),
         })
+    }
+
+    /// [`Bsdf::eval`], and the density of the way back: [`Bsdf::pdf`] of (wi, wo) in the mode of the other end, at little more than the
+    /// price of one where the lobe is Lambertian.
+    #[inline]
+    pub fn eval_both_ways(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Option<(BsdfValue, SolidAnglePdf)> {
+        if let (Lobe::Diffuse(lobe), None) = (&self.lobe, &self.sides) {
+            let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+            let value = lobe.eval(wo, wi)?;
+            let reverse = lobe.eval(wi, wo)?.pdf;
+            let value = BsdfValue {
+                f: value.f,
+                pdf: SolidAnglePdf(value.pdf),
+                cos_theta: wi.z.abs(),
+            };
+            return Some((value, SolidAnglePdf(reverse)));
+        }
+        let value = self.eval(wo, wi, mode)?;
+        Some((value, self.pdf(wi, wo, mode.reversed())))
     }
 
     /// The value of the BSDF in sr⁻¹, without the cosine and without delta lobes. 0 where no light goes.

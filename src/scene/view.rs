@@ -9,7 +9,7 @@ use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
 use crate::sampling::{Sampler, SamplerKind};
-use crate::spectrum::{ColorMode, ColorSpace, Outside, Spectrum, sensor_curves};
+use crate::spectrum::{ColorMode, ColorSpace, Outside, SampledSpectrum, Spectrum, Wavelengths, sensor_curves};
 
 /// Everything about a picture that is not the scene.
 #[derive(Clone, Debug)]
@@ -100,6 +100,13 @@ impl View {
     /// as in pbrt-v4. It is that of all samples that are planned, whichever of them are rendered.
     pub fn detail_scale(&self) -> f32 {
         (1.0 / (self.sampler.samples_per_pixel() as f32).sqrt()).max(0.125)
+    }
+
+    /// What a light path brings to the picture, for a unit area of film: see [`Sensor::splat_to_rgb`].
+    #[inline]
+    pub fn splat_to_rgb(&self, l: SampledSpectrum, lambda: &Wavelengths) -> [f32; 3] {
+        let [width, height] = self.resolution;
+        self.sensor.splat_to_rgb(l, lambda, width as f32 * height as f32)
     }
 
     /// The film positions that its pixels see; light paths reach the camera there.

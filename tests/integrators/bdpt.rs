@@ -164,3 +164,34 @@ fn a_point_light_in_a_room_leaves_no_bright_pixel() {
         );
     }
 }
+
+/// Light subpaths bring much to little film. Were the limit for that, and not for the part of it that counts as a sample, it would take
+/// most of their light.
+#[test]
+fn a_limit_above_all_samples_takes_nothing_from_light_paths() {
+    for name in ["bdpt", "lightpath"] {
+        let render = |limit: &str| {
+            let resolution = r#""integer yresolution" 44"#;
+            let text = room(name, PANEL).replace(resolution, &format!("{resolution} {limit}"));
+            // A filter without negative weights, so that less of each sample is less in every pixel.
+            let text = text.replace("mitchell", "box");
+            let built = Built::new(parse(&text), Backend::default(), ColorMode::Rgb);
+            let overrides = ViewOverrides {
+                spp: Some(4),
+                ..ViewOverrides::default()
+            };
+            picture(&built, &overrides, 2)
+        };
+        let mean = |bits: &[u32]| {
+            let sum: f64 = bits.iter().map(|&bits| f64::from(f32::from_bits(bits))).sum();
+            sum / bits.len() as f64
+        };
+        let [unlimited, high, low] = ["", "1000", "0.1"].map(|limit| match limit {
+            "" => render(""),
+            limit => render(&format!(r#""float maxcomponentvalue" {limit}"#)),
+        });
+        assert!((mean(&high) / mean(&unlimited) - 1.0).abs() < 1e-4, "{name}");
+        // One that most samples exceed takes from them.
+        assert!(mean(&low) < 0.9 * mean(&unlimited), "{name}");
+    }
+}

@@ -7,22 +7,24 @@
 //! |---|---|---|
 //! | t = 1, s > 1 | vertices of light subpaths are connected to the lens, and splatted | `light_path.rs` |
 //! | s = 0 | a camera subpath meets a light | `camera_path.rs` |
-//! | s = 1 | its vertices are connected to points of lights, chosen as in `path` | `camera_path.rs` |
-//! | s > 1, t > 1 | and to all vertices of the light subpath | `camera_path.rs` |
+//! | s = 1 | its vertices are connected to points of lights, chosen as in `path` | `connect.rs` |
+//! | s > 1, t > 1 | and to all vertices of the light subpath | `connect.rs` |
 //!
 //! Lights seen directly are left to s = 0. What each is worth is in `mis.rs`. All connections of a stage are one stream of shadow rays.
 //!
 //! The light tracer is the first row alone, unweighted, with lights seen directly by s = 0: Dutre, Lafortune and Willems 1993.
 
 mod camera_path;
+mod connect;
 mod light_path;
 mod mis;
 mod pyramid;
 
-use self::light_path::{LightRay, LightVertices};
+use self::light_path::{LightVertices, light_start};
 use self::mis::{Exponent, Partial};
 use self::pyramid::Record;
 pub use self::pyramid::{Pyramid, StrategyLayer};
+use super::adjoint::adjoint_correction;
 use super::fault::Fault;
 use super::lane::Lane;
 use super::numbers::EventNumbers;
@@ -34,7 +36,7 @@ use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
 use crate::sampling::SampleStream;
-use crate::scene::View;
+use crate::scene::{Scene, View};
 
 /// The bidirectional path tracer, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +71,8 @@ pub(super) struct State {
     partial: Partial,
     /// What all scattering left of the light: the greatest of the wavelengths, for Russian roulette.
     throughput: f32,
+    /// What connections could have brought to the camera subpath so far.
+    found: f32,
 }
 
 /// How a ray began.
@@ -76,8 +80,8 @@ pub(super) struct State {
 enum Origin {
     /// At the lens.
     Camera,
-    /// At a light.
-    Light(LightRay),
+    /// At a light: see [`LightVertices::start`].
+    Light,
     /// At a surface.
     Surface,
 }
@@ -107,6 +111,7 @@ impl Estimator for BdptIntegrator {
             n: Vec3::ZERO,
             partial: Partial { vcm: 0.0, vc: 0.0 },
             throughput: 1.0,
+            found: 0.0,
         }
     }
 
@@ -117,6 +122,12 @@ impl Estimator for BdptIntegrator {
     fn retire_layers(&self, memory: &mut LightVertices<'_>, wave: &Retiring<'_>) {
         if let Some(record) = &mut memory.record {
             record.retire(wave);
+        }
+    }
+
+    fn arrived(memory: &mut LightVertices<'_>, note: u32) {
+        if let Some(record) = &mut memory.record {
+            record.arrived(note);
         }
     }
 
@@ -150,8 +161,56 @@ impl BdptIntegrator {
         f64::from(view.resolution[0]) * f64::from(view.resolution[1])
     }
 
-    /// Goes on from a vertex, either way.
-    fn scatter<'s>(&self, stage: &mut SubpathStage<'_, 's>, event: &Event<'_, 's>) {
+    /// What a subpath that meets a surface keeps of the strategies before. `None` if its light does not shine there.
+    fn arrive(
+        &self,
+        stage: &SubpathStage<'_, '_>,
+        vertex: &Vertex<'_, State>,
+        si: &SurfaceInteraction,
+    ) -> Option<Partial> {
+        let Vertex { lane, ray, .. } = *vertex;
+        let cos = f64::from(si.ng.dot(ray.direction).abs());
+        Some(match lane.state.origin {
+            Origin::Camera => {
+                let arrival = stage.view.camera.pdf_we(si.p, ray.direction, ray.time);
+                let arrival = arrival.map_or(0.0, |ray| f64::from(ray.arrival.0));
+                self.exponent()
+                    .camera_start(Self::light_paths(stage.view), arrival, cos)
+            }
+            Origin::Light => {
+                let lambda = &stage.slots[lane.slot as usize].lambda;
+                let start = light_start(stage.scene, stage.memory.start(lane.slot)?, si, ray, lambda)?;
+                self.exponent().light_start(&start, cos)
+            }
+            Origin::Surface => {
+                let distance_squared = f64::from(lane.state.p.distance_squared(si.p));
+                self.exponent().arrive(lane.state.partial, distance_squared, cos)
+            }
+        })
+    }
+
+    /// The vertex of a subpath that meets a surface.
+    fn event<'a, 's>(
+        &self,
+        stage: &mut SubpathStage<'_, 's>,
+        vertex: &Vertex<'a, State>,
+        si: &'a SurfaceInteraction,
+        partial: Partial,
+    ) -> Event<'a, 's> {
+        let scene: &'s Scene = stage.scene;
+        let lambda = &mut stage.slots[vertex.lane.slot as usize].lambda;
+        Event {
+            lane: vertex.lane,
+            si,
+            bsdf: scene.material(si.hit.geometry).bsdf(si, lambda),
+            partial,
+            numbers: vertex.numbers,
+            cone: vertex.cone,
+        }
+    }
+
+    /// Goes on from a vertex, either way. `found` is that of the next [`State`].
+    fn scatter<'s>(&self, stage: &mut SubpathStage<'_, 's>, event: &Event<'_, 's>, found: f32) {
         let Event { lane, si, numbers, .. } = event;
         let mode = stage.mode;
         let Some(sample) = event.bsdf.sample_f(si.wo, numbers.lobe, numbers.bsdf, mode) else {
@@ -165,7 +224,7 @@ impl BdptIntegrator {
             }
             Density::Delta(_) => self.exponent().scatter_delta(event.partial, cos),
             Density::Continuous(forward) => {
-                let reverse = event.bsdf.pdf(sample.wi, si.wo, other(mode));
+                let reverse = event.bsdf.pdf(sample.wi, si.wo, mode.reversed());
                 self.exponent()
                     .scatter(event.partial, f64::from(forward.0), f64::from(reverse.0), cos)
             }
@@ -180,7 +239,7 @@ impl BdptIntegrator {
             // Refraction squeezes radiance, not what light paths carry.
             TransportMode::Importance => 1.0,
         };
-        let survival = survival(stage.depth, throughput * eta_scale, self.max_depth.is_none());
+        let survival = self.survival(mode, stage.depth, throughput * eta_scale);
         if numbers.roulette >= survival {
             return;
         }
@@ -194,28 +253,29 @@ impl BdptIntegrator {
                 n: si.ns,
                 partial,
                 throughput: throughput / survival,
+                found,
             },
             ..**lane
         };
         stage.go_on(&next, &si.spawn_ray(sample.wi));
     }
 
-    /// What takes the BSDF of a shading normal to its adjoint, for light that arrives from `si.wo` and goes on into `wi` (Veach 1997,
-    /// section 5.3.2): 1 where the two normals are the same. The shading normal is the BSDF's, which maps may have bent.
+    /// The probability with which a subpath of this throughput goes on after the scattering event `depth`. Each vertex of a light subpath
+    /// costs a splat, and connections to all vertices of the camera subpath: where there are such, light subpaths end earlier, with
+    /// their throughput itself and from the second event on, which on the Cornell box takes a tenth off error times time.
+    fn survival(&self, mode: TransportMode, depth: u32, throughput: f32) -> f32 {
+        let is_unlimited = self.max_depth.is_none();
+        match (mode, self.strategies) {
+            (TransportMode::Importance, Strategies::All) => survival(depth + 1, throughput * throughput, is_unlimited),
+            _ => survival(depth, throughput, is_unlimited),
+        }
+    }
+
+    /// See [`adjoint_correction`].
     fn adjoint_correction(&self, si: &SurfaceInteraction, bsdf: &Bsdf, wi: Vec3) -> f32 {
         if self.fault.is(Fault::AdjointForgotten) {
             return 1.0;
         }
-        let ratio = |w: Vec3| si.ng.dot(w).abs() / bsdf.abs_cos(w);
-        let correction = ratio(wi) / ratio(si.wo);
-        if correction.is_finite() { correction } else { 0.0 }
-    }
-}
-
-/// The direction of transport on the way back.
-fn other(mode: TransportMode) -> TransportMode {
-    match mode {
-        TransportMode::Radiance => TransportMode::Importance,
-        TransportMode::Importance => TransportMode::Radiance,
+        adjoint_correction(si, bsdf, wi)
     }
 }

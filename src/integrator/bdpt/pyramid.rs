@@ -1,15 +1,16 @@
 //! What each strategy found: a layer of the film for each (s, t), with and without its weight.
 //!
-//! Contributions are recorded beside those of the picture, with shadow rays of their own, so that a render without layers has nothing
-//! more to carry.
+//! Contributions are noted beside those of the picture, and count if the same shadow rays arrive. Connections that Russian roulette leaves
+//! out of the picture have shadow rays too, for the layers without weights.
+//!
+//! Connecting a light to the lens directly (s = t = 1) is no strategy, as in pbrt-v4: lights seen directly are left to s = 0, which finds all
+//! that have an extent, and others are not seen.
 
 use super::BdptIntegrator;
 use crate::film::{Film, Splat, lock};
-use crate::geometry::Ray;
-use crate::integrator::shadow::{ShadowQueue, SplatContribution};
 use crate::integrator::stage::Retiring;
 use crate::math::Vec2;
-use crate::scene::{Scene, View};
+use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
 
 /// The strategies that are told apart: those of all paths of up to so many edges.
@@ -127,9 +128,12 @@ struct Found {
     slot: u32,
     /// As [`Pyramid::index`] has it.
     strategy: usize,
-    /// Weighted.
+    /// As it counts in the picture.
     value: SampledSpectrum,
-    weight: f32,
+    /// Without its weight, and without Russian roulette among connections.
+    in_full: SampledSpectrum,
+    /// Where it lands on the film, if it is a splat.
+    film: Option<Vec2>,
 }
 
 /// What the strategies found in a wave.
@@ -138,28 +142,21 @@ pub(super) struct Record {
     pyramid: Pyramid,
     /// Radiance by slot, and in it by layer.
     l: Vec<SampledSpectrum>,
-    shadows: ShadowQueue<Found>,
-    splats: ShadowQueue<(Found, Vec2)>,
+    /// What counts if a shadow ray is not blocked.
+    noted: Vec<Found>,
     landed: Vec<(Found, Vec2)>,
 }
-
-/// Shadow rays that are traced at once.
-const MOST_SHADOWS: usize = 1 << 14;
 
 impl Found {
     /// The layers that it belongs to, and what it brings to each.
     fn by_layer(&self, pyramid: Pyramid) -> impl Iterator<Item = (usize, SampledSpectrum)> {
-        let Self {
-            strategy,
-            value,
-            weight,
-            ..
-        } = *self;
-        let is_longer = strategy == pyramid.strategy_count();
-        // A weight that vanishes takes the value with it.
-        let in_full = (!is_longer && weight >= f32::MIN_POSITIVE).then(|| (2 * strategy, value * (1.0 / weight)));
-        let weighted = if is_longer { 2 * strategy } else { 2 * strategy + 1 };
-        in_full.into_iter().chain([(weighted, value)])
+        let first = 2 * self.strategy;
+        let (in_full, weighted) = if self.strategy == pyramid.strategy_count() {
+            (None, (first, self.value))
+        } else {
+            (Some((first, self.in_full)), (first + 1, self.value))
+        };
+        in_full.into_iter().chain([weighted])
     }
 }
 
@@ -170,8 +167,7 @@ impl Record {
             Box::new(Self {
                 pyramid,
                 l: Vec::new(),
-                shadows: ShadowQueue::default(),
-                splats: ShadowQueue::default(),
+                noted: Vec::new(),
                 landed: Vec::new(),
             })
         })
@@ -181,18 +177,62 @@ impl Record {
     pub fn restart(&mut self, slots: usize) {
         self.l.clear();
         self.l.resize(slots * self.pyramid.layer_count(), SampledSpectrum::ZERO);
+        self.noted.clear();
         self.landed.clear();
     }
 
-    /// Strategy (s, t) brings `value`, weighted by `weight`, to a slot.
-    pub fn add(&mut self, slot: u32, [s, t]: [u32; 2], value: SampledSpectrum, weight: f32) {
-        let strategy = self.pyramid.index(s, t);
+    /// A camera subpath of `t` vertices meets a light: it brings `value`, and `in_full` without its weight.
+    pub fn add(&mut self, slot: u32, t: u32, value: SampledSpectrum, in_full: SampledSpectrum) {
+        let strategy = self.pyramid.index(0, t);
         self.land(&Found {
             slot,
             strategy,
             value,
-            weight,
+            in_full,
+            film: None,
         });
+    }
+
+    /// Strategy (s, t) brings the same if a shadow ray is not blocked: the number by which it is told so.
+    pub fn note(&mut self, slot: u32, [s, t]: [u32; 2], value: SampledSpectrum, in_full: SampledSpectrum) -> u32 {
+        let strategy = self.pyramid.index(s, t);
+        self.noted.push(Found {
+            slot,
+            strategy,
+            value,
+            in_full,
+            film: None,
+        });
+        self.noted.len() as u32 - 1
+    }
+
+    /// The same of a splat, of strategy (s, 1).
+    pub fn note_splat(
+        &mut self,
+        slot: u32,
+        s: u32,
+        value: SampledSpectrum,
+        in_full: SampledSpectrum,
+        film: Vec2,
+    ) -> u32 {
+        let strategy = self.pyramid.index(s, 1);
+        self.noted.push(Found {
+            slot,
+            strategy,
+            value,
+            in_full,
+            film: Some(film),
+        });
+        self.noted.len() as u32 - 1
+    }
+
+    /// What was noted under this number counts.
+    pub fn arrived(&mut self, note: u32) {
+        let found = self.noted[note as usize];
+        match found.film {
+            Some(film) => self.landed.push((found, film)),
+            None => self.land(&found),
+        }
     }
 
     fn land(&mut self, found: &Found) {
@@ -202,61 +242,8 @@ impl Record {
         }
     }
 
-    /// The same if nothing is in the way of `ray`.
-    pub fn add_unless_occluded(
-        &mut self,
-        scene: &Scene,
-        ray: &Ray,
-        slot: u32,
-        [s, t]: [u32; 2],
-        value: SampledSpectrum,
-        weight: f32,
-    ) {
-        if !ray.is_valid() {
-            return;
-        }
-        let strategy = self.pyramid.index(s, t);
-        let found = Found {
-            slot,
-            strategy,
-            value,
-            weight,
-        };
-        self.shadows.push(ray, found);
-        if self.shadows.len() >= MOST_SHADOWS {
-            self.flush(scene);
-        }
-    }
-
-    /// Strategy (s, 1) brings a splat, weighted by `weight`, if nothing is in the way of `ray`.
-    pub fn splat_unless_occluded(&mut self, scene: &Scene, ray: &Ray, s: u32, splat: &SplatContribution, weight: f32) {
-        if !ray.is_valid() {
-            return;
-        }
-        let found = Found {
-            slot: splat.slot,
-            strategy: self.pyramid.index(s, 1),
-            value: splat.value,
-            weight,
-        };
-        self.splats.push(ray, (found, splat.film));
-        if self.splats.len() >= MOST_SHADOWS {
-            self.flush(scene);
-        }
-    }
-
-    /// Traces all shadow rays.
-    fn flush(&mut self, scene: &Scene) {
-        let mut shadows = std::mem::take(&mut self.shadows);
-        shadows.flush(scene, |found| self.land(&found));
-        self.shadows = shadows;
-        let landed = &mut self.landed;
-        self.splats.flush(scene, |found| landed.push(found));
-    }
-
     /// Takes everything to the layers of a film. What the picture drops they drop too.
     pub fn retire(&mut self, wave: &Retiring<'_>) {
-        self.flush(wave.scene);
         self.retire_slots(wave);
         let mut splats: Vec<Vec<Splat>> = vec![Vec::new(); self.pyramid.layer_count()];
         for (found, film) in self.landed.drain(..) {
@@ -265,7 +252,7 @@ impl Record {
                 continue;
             }
             for (layer, value) in found.by_layer(self.pyramid) {
-                let rgb = wave.view.sensor.to_rgb(value, &slot.lambda);
+                let rgb = wave.view.splat_to_rgb(value, &slot.lambda);
                 splats[layer].push(Splat { film, rgb });
             }
         }

@@ -12,7 +12,6 @@ impl<E: Estimator> Wave<'_, E> {
     pub(super) fn retire(&mut self, tile: Option<&Mutex<TileSums>>) {
         if !self.film.layers().is_empty() {
             let wave = Retiring {
-                scene: self.scene,
                 view: self.view,
                 film: self.film,
                 slots: &self.slots,
@@ -40,7 +39,7 @@ impl<E: Estimator> Wave<'_, E> {
             }
             self.splatted.push(Splat {
                 film: splat.film,
-                rgb: self.view.sensor.to_rgb(splat.value, &slot.lambda),
+                rgb: self.view.splat_to_rgb(splat.value, &slot.lambda),
             });
         }
         self.stats.dropped_samples += self.film.splat(&self.view.filter, &mut self.splatted);
