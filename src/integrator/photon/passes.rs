@@ -10,6 +10,7 @@ use super::progressive::{ProgressivePass, Radius, shrinkage};
 use super::shoot::{PhotonNumbers, Shot, Stand, Until, learn_caustics, moment_of, shoot};
 use super::tracer::{Keep, PhotonTracer};
 use super::{PhotonCount, PhotonIntegrator, SppmIntegrator};
+use crate::desc::Terms;
 use crate::integrator::RenderStats;
 use crate::integrator::schedule::{Progress, render_tiles};
 use crate::integrator::stage::Moment;
@@ -96,8 +97,15 @@ impl PhotonIntegrator {
             let all = f64::from(wanted.unwrap_or(automatic));
             (all * share.min(1.0)).ceil() as u32
         };
-        let caustic = count(parameters.caustic_photons, CAUSTIC_PHOTONS);
-        let global = count(parameters.global_photons, GLOBAL_PHOTONS);
+        // Only maps that are asked: indirect light asks both.
+        let terms = parameters.terms;
+        let count_if = |asked: bool, wanted, automatic| if asked { count(wanted, automatic) } else { 0 };
+        let caustic = count_if(
+            terms.caustic || terms.indirect,
+            parameters.caustic_photons,
+            CAUSTIC_PHOTONS,
+        );
+        let global = count_if(terms.indirect, parameters.global_photons, GLOBAL_PHOTONS);
         let max_distance = parameters
             .max_distance
             .unwrap_or(MAX_DISTANCE * scene.bounds().radius());
@@ -106,8 +114,10 @@ impl PhotonIntegrator {
             max_distance,
             kernel: Kernel::new(parameters.filter),
         };
-        let mut terms = parameters.terms;
-        terms.indirect &= global > 0;
+        let terms = Terms {
+            indirect: global > 0,
+            ..terms
+        };
         let mut render = Render::new(
             stand,
             self.max_depth,
