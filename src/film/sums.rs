@@ -23,6 +23,8 @@ pub struct TileSums {
     pixels: Vec<PixelSums>,
     /// What light paths brought, if the film takes it: linear RGB, in units of 2^-64; else empty.
     pub(super) splats: Vec<[i128; 3]>,
+    /// Squares of the luminance of camera samples, if the film keeps them, in units of 2^-48; else empty.
+    squares: Vec<i128>,
     dropped: u64,
 }
 
@@ -38,6 +40,14 @@ pub(super) fn quantize(value: f64) -> Option<i128> {
         let fraction = (value - whole as f64) * 9_223_372_036_854_775_808.0;
         (i128::from(whole) << 64) + (i128::from(fraction as i64) << 1)
     })
+}
+
+/// One over the unit of squares: 2^48. Squares of what is summed fit 128 bits with it.
+const SQUARE_SCALE: f64 = (1_u64 << 48) as f64;
+
+/// Of linear RGB, by the weights of sRGB's primaries.
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// Back to a number.
@@ -74,9 +84,12 @@ impl TileSums {
             ])
         });
         match quantized {
-            Some(rgb) => {
-                for (sum, value) in sums.rgb.iter_mut().zip(rgb) {
+            Some(quantized) => {
+                for (sum, value) in sums.rgb.iter_mut().zip(quantized) {
                     *sum += value;
+                }
+                if let (Some(square), Some(rgb)) = (self.squares.get_mut(index), rgb) {
+                    *square += (luminance(rgb.map(f64::from)).powi(2) * SQUARE_SCALE) as i128;
                 }
                 true
             }
@@ -139,6 +152,7 @@ impl Film {
                         rect,
                         pixels,
                         splats: Vec::new(),
+                        squares: Vec::new(),
                         dropped: 0,
                     }));
                 }
@@ -162,6 +176,38 @@ impl Film {
         }
         self.takes_splats = true;
         self
+    }
+
+    /// The same film with sums of squares, from which [`Film::noise`] tells how far it is from its end.
+    pub fn with_squares(mut self) -> Self {
+        for tile in &mut self.tiles {
+            let tile = tile.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
+            tile.squares.resize(tile.pixels.len(), 0);
+        }
+        self
+    }
+
+    /// The relative error that is to be expected of a film [with squares](Film::with_squares) after `samples` independent samples of
+    /// each pixel: the root of the mean over pixels of V / (n (m² + 0.01)), with m and V the mean and the variance of a sample's
+    /// luminance. Infinite for fewer than two samples.
+    pub fn noise(&self, samples: u32) -> f64 {
+        if samples < 2 {
+            return f64::INFINITY;
+        }
+        let n = f64::from(samples);
+        let mut sum = 0.0;
+        for tile in &self.tiles {
+            let tile = lock(tile);
+            for (pixel, &square) in tile.pixels.iter().zip(&tile.squares) {
+                let weight = dequantize(pixel.weight);
+                if weight != 0.0 {
+                    let mean = luminance(pixel.rgb.map(|value| dequantize(value) / weight));
+                    let variance = (square as f64 / SQUARE_SCALE / n - mean * mean).max(0.0) * n / (n - 1.0);
+                    sum += variance / (n * (mean * mean + 0.01));
+                }
+            }
+        }
+        (sum / self.crop.area() as f64).sqrt()
     }
 
     /// The same film with others beside it, which take parts of its picture.
@@ -299,6 +345,24 @@ mod tests {
             film.develop()
         };
         assert_eq!(render(&mut values.iter()), render(&mut values.iter().rev()));
+    }
+
+    #[test]
+    fn noise_is_the_relative_error_of_the_mean() {
+        // Samples of 1 and 3 in turn: mean 2, variance 1 (n / (n - 1) of it from n samples).
+        let film = film().with_squares();
+        assert_eq!(film.noise(1), f64::INFINITY);
+        for tile in film.tiles() {
+            let mut tile = lock(tile);
+            let rect = tile.rect();
+            for (y, x) in (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (y, x))) {
+                for sample in 0..100 {
+                    tile.add(x, y, Some([1.0 + 2.0 * (sample % 2) as f32; 3]), 1.0);
+                }
+            }
+        }
+        let expected = (100.0_f64 / 99.0 / (100.0 * 4.01)).sqrt();
+        assert!((film.noise(100) / expected - 1.0).abs() < 1e-6, "{}", film.noise(100));
     }
 
     #[test]

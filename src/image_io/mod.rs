@@ -9,6 +9,7 @@
 
 mod encoding;
 mod exr;
+mod false_color;
 pub mod flip;
 mod foreign;
 mod image;
@@ -21,6 +22,7 @@ pub mod srgb;
 
 pub use self::encoding::Encoding;
 pub use self::exr::read_exr;
+pub use self::false_color::false_colors;
 pub use self::image::{Chromaticities, Image, Window};
 pub use self::metadata::ImageMetadata;
 pub use self::metrics::Comparison;

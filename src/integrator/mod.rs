@@ -12,6 +12,9 @@
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
 //! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, at scattering event d |
 //!
+//! A photon has a stream of its own, by pass and kind of photon, with the groups of a light path; the wavelengths and the time of a pass are the
+//! same for all its photons and camera paths. A direction of a final gather has a branch of its sample's numbers.
+//!
 //! A light path has a [branch](crate::sampling::SampleStream::branch) of its sample's numbers, with the same groups at scattering events:
 //! where it is connected to the lens, the light point is one of the lens. Groups 0 and 1 there: position on the light, which light;
 //! direction from it.
@@ -39,7 +42,7 @@ pub use kajiya::KajiyaIntegrator;
 pub use path::PathIntegrator;
 #[doc(hidden)]
 pub use photon::{KdTree, Nearest};
-pub use photon::{PhotonCount, PhotonIntegrator, SppmIntegrator};
+pub use photon::{Limits, PhotonCount, PhotonIntegrator, ShownMap, SppmIntegrator};
 pub use schedule::{Progress, Silent};
 
 use crate::desc::{
@@ -47,6 +50,7 @@ use crate::desc::{
     Terms,
 };
 use crate::film::Film;
+use crate::material::Material;
 use crate::scene::{Scene, View};
 use photon::Stand;
 
@@ -106,8 +110,16 @@ impl Integrator {
                 strategies: Strategies::LightTracer,
                 fault: Fault::None,
             }),
-            IntegratorKind::Photon(parameters) => Self::Photon(PhotonIntegrator { max_depth, parameters }),
-            IntegratorKind::Sppm(parameters) => Self::Sppm(SppmIntegrator { max_depth, parameters }),
+            IntegratorKind::Photon(parameters) => Self::Photon(PhotonIntegrator {
+                max_depth,
+                parameters,
+                shown: None,
+            }),
+            IntegratorKind::Sppm(parameters) => Self::Sppm(SppmIntegrator {
+                max_depth,
+                parameters,
+                limits: Limits::default(),
+            }),
         }
     }
 
@@ -183,6 +195,27 @@ impl Integrator {
         Some(self)
     }
 
+    /// The same integrator, showing nothing but a photon map. `None` if it has none of that kind.
+    #[must_use]
+    pub fn with_shown(self, map: ShownMap) -> Option<Self> {
+        match self {
+            Self::Photon(photon) => Some(Self::Photon(PhotonIntegrator {
+                shown: Some(map),
+                ..photon
+            })),
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => None,
+        }
+    }
+
+    /// The same integrator, which may end early. `None` if it does not work in passes that make the picture better and better.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Option<Self> {
+        match self {
+            Self::Sppm(sppm) => Some(Self::Sppm(SppmIntegrator { limits, ..sppm })),
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) => None,
+        }
+    }
+
     /// What the number of samples of a pixel is a multiple of.
     pub fn samples_multiple(&self) -> u32 {
         match self {
@@ -191,9 +224,34 @@ impl Integrator {
         }
     }
 
+    /// Light of `scene` that it cannot find, and which integrators can, for people; `None` if it finds all.
+    pub fn blind_spot(&self, scene: &Scene) -> Option<String> {
+        let lights = scene.lights().iter().filter(|light| light.is_delta()).count();
+        if lights == 0 || !scene.materials().iter().any(Material::may_have_delta) {
+            return None;
+        }
+        let (missed, found_by) = match self {
+            Self::Path(_) | Self::Kajiya(_) => (
+                "that comes by way of mirrors or clear glass",
+                "`sppm` and `photon` find it, and `bdpt` where it is not seen by way of such surfaces again",
+            ),
+            Self::Bdpt(_) => (
+                "that comes by way of mirrors or clear glass and is seen by way of such surfaces",
+                "`sppm` and `photon` find it",
+            ),
+            Self::Photon(_) | Self::Sppm(_) => return None,
+        };
+        let whose = if lights == 1 { "a light" } else { "lights" };
+        Some(format!(
+            "`{}` cannot find the light of {whose} without extent {missed}: {found_by}",
+            self.name()
+        ))
+    }
+
     /// An empty film for what it does with `view`.
     pub fn film(&self, view: &View) -> Film {
         match self {
+            Self::Sppm(sppm) if sppm.limits.noise.is_some() => view.film().with_squares(),
             Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => view.film(),
             Self::Bdpt(_) => view.film().with_splats(),
         }
@@ -237,6 +295,8 @@ pub struct RenderStats {
     pub bounce_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// The samples of each pixel that were rendered, if fewer than were planned.
+    pub stopped_after: Option<u32>,
     /// Photons of caustic maps.
     pub caustic_photons: PhotonCount,
     /// Photons of global maps.

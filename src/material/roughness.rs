@@ -26,6 +26,14 @@ pub struct TexturedRoughness {
 }
 
 impl Roughness {
+    /// Whether a surface may be smooth somewhere.
+    pub(super) fn may_be_smooth(&self) -> bool {
+        match self {
+            Self::Constant(facets) => facets.is_none(),
+            Self::Textured(_) => true,
+        }
+    }
+
     /// Of `u` and `v` along the tangents: pbrt-v4's perceptual roughness with `remap`, else the slopes themselves.
     pub fn new(u: FloatTexture, v: FloatTexture, remap: bool, distribution: Distribution) -> Self {
         match (&u, &v) {

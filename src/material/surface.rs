@@ -169,6 +169,18 @@ impl Material {
         Bsdf::new(frame, lobe)
     }
 
+    /// Whether some point of it may have delta lobes: be a mirror or clear glass, alone or under or over something else.
+    pub fn may_have_delta(&self) -> bool {
+        match self {
+            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Principled(_) => false,
+            Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => roughness.may_be_smooth(),
+            Self::ThinDielectric { .. } => true,
+            Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
+            Self::Mix(mix) => mix.materials.iter().any(Self::may_have_delta),
+            Self::Relief(relief) => relief.material.may_have_delta(),
+        }
+    }
+
     /// Whether no point of it can [be specular](Bsdf::is_specular), whatever its textures say, nor has delta lobes.
     pub fn is_never_specular(&self) -> bool {
         match self {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{
-    ColorArg, MaxDepth, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop, parse_finite,
-    parse_max_depth, parse_pixel, parse_resolution, parse_seed,
+    ColorArg, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop,
+    parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
 };
 use crate::accel::Backend;
 use crate::film::PixelRect;
@@ -47,6 +47,21 @@ pub struct RenderArgs {
     /// Parts of the light that `photon` and `sppm` show, separated by commas [default: all]
     #[arg(long, value_name = "TERM", value_delimiter = ',')]
     pub terms: Vec<TermArg>,
+
+    /// With `photon`: show in false colors how much light one of its maps has
+    ///
+    /// Blue, cyan, green, yellow, red and white stand for a thousandth of the brightest (of all but the brightest pixel in a thousand)
+    /// up to that, by its logarithm; black for less.
+    #[arg(long, value_name = "MAP")]
+    pub photon_map: Option<PhotonMapArg>,
+
+    /// With `sppm`: begin no pass after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = parse_positive)]
+    pub time: Option<f64>,
+
+    /// With `sppm`: stop when the picture's relative error is expected to be at most this (0.05 is hardly visible)
+    #[arg(long, value_name = "ERROR", value_parser = parse_positive)]
+    pub noise: Option<f64>,
 
     /// With the integrator `bdpt`: write what each strategy (s, t) found into this directory
     ///

@@ -5,6 +5,7 @@ use clap::ValueEnum;
 use crate::accel::{Backend, BuildQuality};
 use crate::desc::{Strategy, Term};
 use crate::film::PixelRect;
+use crate::integrator::ShownMap;
 use crate::sampling::{SamplerKind, Strata};
 use crate::spectrum::ColorMode;
 
@@ -68,6 +69,24 @@ impl From<TermArg> for Term {
             TermArg::Specular => Self::Specular,
             TermArg::Caustic => Self::Caustic,
             TermArg::Indirect => Self::Indirect,
+        }
+    }
+}
+
+/// `--photon-map`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum PhotonMapArg {
+    /// Of photons that come by way of mirrors and glass only
+    Caustic,
+    /// Of all photons
+    Global,
+}
+
+impl From<PhotonMapArg> for ShownMap {
+    fn from(arg: PhotonMapArg) -> Self {
+        match arg {
+            PhotonMapArg::Caustic => Self::Caustic,
+            PhotonMapArg::Global => Self::Global,
         }
     }
 }
@@ -162,6 +181,13 @@ pub(super) fn parse_finite(text: &str) -> Result<f32, String> {
         .ok()
         .filter(|x: &f32| x.is_finite())
         .ok_or_else(|| "expected a number".to_owned())
+}
+
+pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| *x > 0.0 && *x <= 1e9)
+        .ok_or_else(|| "expected a number of more than 0".to_owned())
 }
 
 /// The largest picture: 2^28 pixels.

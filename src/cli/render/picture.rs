@@ -1,7 +1,7 @@
 //! One picture: rendered, written, counted.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::Job;
 use super::prepare::{Picture, Prepared};
@@ -9,8 +9,8 @@ use crate::cli::report::Reporter;
 use crate::cli::stats::{Photons, Statistics, peak_memory_bytes};
 use crate::desc::{SceneDesc, Terms};
 use crate::error::{Error, Result};
-use crate::image_io::{Image, ImageMetadata, Window};
-use crate::integrator::{Integrator, RenderStats};
+use crate::image_io::{Image, ImageMetadata, Window, false_colors};
+use crate::integrator::{Integrator, Limits, RenderStats};
 use crate::scene::View;
 use crate::spectrum::ColorSpace;
 
@@ -47,7 +47,7 @@ impl Job<'_> {
         let accel = prepared.scene.accel().info();
         let metadata = ImageMetadata {
             seed: self.args.seed,
-            spp: i32::try_from(view.sampler.samples_per_pixel()).unwrap_or(i32::MAX),
+            spp: i32::try_from(samples_of(&view, &stats)).unwrap_or(i32::MAX),
             integrator: integrator.name().to_owned(),
             backend: accel.backend.to_string(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -55,7 +55,11 @@ impl Job<'_> {
             scene_hash: prepared.desc.hash.clone(),
             chromaticities: chromaticities(view.color_space),
         };
-        let image = Image::rgb(data_window(&view), display_window(&view), film.develop())?;
+        let mut pixels = film.develop();
+        if self.args.photon_map.is_some() {
+            false_colors(&mut pixels);
+        }
+        let image = Image::rgb(data_window(&view), display_window(&view), pixels)?;
         let written = output.commit(&image, Some(&metadata), self.args.exposure)?;
         if view.color_space != ColorSpace::Srgb && written.path.extension().is_none_or(|e| e != "exr") {
             let name = view.color_space.name();
@@ -101,6 +105,25 @@ impl Job<'_> {
                 Error::Usage(format!("{message}: `{name}` does not take light apart"))
             })?;
         }
+        if let Some(map) = self.args.photon_map {
+            let name = integrator.name();
+            integrator = integrator.with_shown(map.into()).ok_or_else(|| {
+                Error::Usage(format!(
+                    "--photon-map is for the integrator `photon`: `{name}` has no maps of that kind"
+                ))
+            })?;
+        }
+        if self.args.time.is_some() || self.args.noise.is_some() {
+            let name = integrator.name();
+            let limits = Limits {
+                time: self.args.time.map(Duration::from_secs_f64),
+                noise: self.args.noise,
+            };
+            integrator = integrator.with_limits(limits).ok_or_else(|| {
+                let message = "--time and --noise are for the integrator `sppm`";
+                Error::Usage(format!("{message}: `{name}` does not work in passes"))
+            })?;
+        }
         let Some(strategy) = self.args.strategy else {
             return Ok(integrator);
         };
@@ -140,7 +163,7 @@ impl Job<'_> {
             backend_version: accel.version,
             threads: self.pool.current_num_threads(),
             seed: self.args.seed,
-            spp: view.sampler.samples_per_pixel(),
+            spp: samples_of(view, stats),
             wall_seconds: start.elapsed().as_secs_f64(),
             load_seconds: prepared.load_seconds,
             build_seconds: prepared.scene.build_seconds(),
@@ -155,6 +178,11 @@ impl Job<'_> {
             dropped_samples: stats.dropped_samples,
         }
     }
+}
+
+/// Samples of each pixel: those that were planned, unless the render ended early.
+fn samples_of(view: &View, stats: &RenderStats) -> u32 {
+    stats.stopped_after.unwrap_or(view.sampler.samples_per_pixel())
 }
 
 /// Red, green, blue and white of a colour space.

@@ -78,6 +78,9 @@ impl Job<'_> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
+        if let Some(missed) = self.integrator(&desc)?.blind_spot(&scene) {
+            reporter.say(&format!("warning: {missed}"));
+        }
         if scene.lights().is_empty() {
             reporter.say(&format!(
                 "warning: {} has no lights: its picture is black",

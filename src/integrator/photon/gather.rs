@@ -2,6 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
+use super::ShownMap;
 use super::carried::Carried;
 use super::eye::{Event, Eye, EyeState, Phase, Way};
 use super::irradiance::IrradianceMap;
@@ -20,6 +21,8 @@ use crate::spectrum::SampledSpectrum;
 /// The camera's side of a pass.
 pub(super) struct GatherPass<'m> {
     pub eye: Eye,
+    /// Only the irradiance of this map is shown, where camera paths first meet a surface that is not specular.
+    pub shown: Option<ShownMap>,
     pub moment: Moment,
     pub maps: &'m Maps,
     pub gathering: Gathering,
@@ -95,6 +98,10 @@ impl Estimator for GatherPass<'_> {
             self.eye.pass_specular(stage, &event, (lane, numbers));
             return;
         }
+        if let Some(shown) = self.shown {
+            self.show(stage, &event, lane, shown);
+            return;
+        }
         match lane.state.phase {
             Phase::Eye => self.first_diffuse(stage, &event, (lane, numbers)),
             Phase::Gather | Phase::GatherBySpecular => self.gathered(stage, &event, (lane, numbers), vertex.ray),
@@ -133,6 +140,19 @@ impl GatherPass<'_> {
             let lane = Lane { stream, ..*lane };
             self.send(stage, event, (&lane, &numbers), directions);
         }
+    }
+
+    /// The irradiance of a map on the side that is seen.
+    fn show(&self, stage: &mut Stage<'_, '_, Self>, event: &Event<'_, '_>, lane: &Lane<EyeState>, shown: ShownMap) {
+        let map = match shown {
+            ShownMap::Caustic => &self.maps.caustic,
+            ShownMap::Global => &self.maps.global,
+        };
+        let si = event.si;
+        let mut receiver = Receiver::new(si, stage.depth, self.eye.max_depth);
+        receiver.ng = if si.ng.dot(si.wo) < 0.0 { -si.ng } else { si.ng };
+        let irradiance = map.nearest_irradiance(&receiver, &self.gathering, stage.memory);
+        add(stage, event, lane, &irradiance, SampledSpectrum::ONE);
     }
 
     /// Sends one of the directions of a final gather.

@@ -20,11 +20,12 @@ const EVEN_SHARE: f32 = 0.1;
 /// does would be far brighter than others.
 const PRIOR: f64 = 0.25;
 /// Cells with fewer pilots are not halved.
-const LEAST_PILOTS: usize = 64;
+const LEAST_PILOTS: usize = 128;
 /// Halvings of the cube on the way to a cell.
 const DEEPEST: u32 = 24;
-/// How much smaller the sum of the cells' shares (the standard deviation that is left) must become for a halving.
-const LEAST_GAIN: f32 = 0.02;
+/// By how much all halvings of a cell together must lower its weight (the standard deviation that is left) to be kept: one alone may
+/// be worth little, where several in a row find a small target.
+const LEAST_GAIN: f32 = 0.01;
 
 /// A pilot: its numbers, and the power that it brought to the map.
 #[derive(Clone, Copy, Debug)]
@@ -164,7 +165,7 @@ impl Square {
     }
 }
 
-/// Appends the node of a cell and all below. `weights` gets the weight of each: worth times volume, where the cube has 1.
+/// Appends the node of a cell and all below that pays. `weights` gets the weight of each: worth times volume, where the cube has 1.
 fn halve(
     pilots: &mut [Pilot],
     of_hits: f64,
@@ -196,7 +197,14 @@ fn halve(
         low: 0.5,
         high: high_index as u32,
     };
-    weights[index] = weights[index + 1] + weights[high_index];
+    let halved = weights[index + 1] + weights[high_index];
+    if halved < (1.0 - LEAST_GAIN) * weights[index] {
+        weights[index] = halved;
+    } else {
+        nodes.truncate(index);
+        weights.truncate(index + 1);
+        nodes.push(Node::Leaf);
+    }
 }
 
 /// Moves those that fulfil `is_first` to the front; how many they are. The order within both parts is the same for the same input.
@@ -211,12 +219,11 @@ fn partition(pilots: &mut [Pilot], is_first: impl Fn(&Pilot) -> bool) -> usize {
     count
 }
 
-/// Across which dimension it pays most to halve a cell, if it does.
+/// Across which dimension it pays most to halve a cell, if there are pilots enough to tell.
 fn best_dimension(pilots: &[Pilot], of_hits: f64, cell: &[(f32, f32); DIMENSIONS], depth: u32) -> Option<usize> {
-    if pilots.len() < LEAST_PILOTS || depth == DEEPEST {
+    if pilots.len() < LEAST_PILOTS || depth == DEEPEST || !pilots.iter().any(Pilot::is_useful) {
         return None;
     }
-    let whole = Square::of(pilots).worth(of_hits);
     let halves = (0..DIMENSIONS).map(|dimension| {
         let (from, to) = cell[dimension];
         let middle = 0.5 * (from + to);
@@ -226,8 +233,8 @@ fn best_dimension(pilots: &[Pilot], of_hits: f64, cell: &[(f32, f32); DIMENSIONS
         }
         (dimension, 0.5 * (squares[0].worth(of_hits) + squares[1].worth(of_hits)))
     });
-    let (dimension, left) = halves.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (left < (1.0 - LEAST_GAIN) * whole).then_some(dimension)
+    let best = halves.min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map(|(dimension, _)| dimension)
 }
 
 /// Gives each half its share of the photons.

@@ -51,7 +51,7 @@ impl IrradianceMap {
             Record {
                 p: photon.p(),
                 ng,
-                irradiance: map.nearest_irradiance(&receiver, PHOTONS_PER_RECORD, gathering, found),
+                irradiance: map.nearest_irradiance_of_others(&receiver, PHOTONS_PER_RECORD, gathering, found),
                 reach: found.radius_squared().sqrt(),
             }
         };

@@ -1,6 +1,6 @@
 //! The points near a point: a balanced, implicit k-d tree.
 //!
-//! Points are split at a median of the widest extent of their box, again and again, until leaves have [`LEAF`] points. There are no
+//! Points are split at a median of the widest extent of their box, again and again, until leaves have [`LEAF`](nodes::LEAF) points. There are no
 //! pointers: points lie leaf after leaf, and a point's position in this order is its *place*. Three splits in a row make a node of
 //! [`WIDTH`] children, so that node `i` of one level has children `8 i..8 i + 8` of the level below. A split gives its left side the
 //! greatest power of two of full leaves that leaves something for the right: so all leaves but the last are full, and all have the
@@ -15,10 +15,12 @@
 //! J. L. Bentley, Multidimensional binary search trees used for associative searching, CACM 18(9), 1975.
 
 mod batch;
+mod bracket;
 mod build;
 mod candidates;
 mod nodes;
 mod search;
+mod simd;
 #[cfg(test)]
 mod tests;
 
@@ -27,12 +29,14 @@ use std::ops::Range;
 pub use candidates::Nearest;
 use nodes::{Leaf, Node, WIDTH};
 
-use crate::math::{Vec3, Vectorizer};
+use simd::Dispatch;
+
+use crate::math::Vec3;
 
 /// A balanced, implicit k-d tree over points.
 #[derive(Clone, Debug, Default)]
 pub struct KdTree {
-    vectorizer: Vectorizer,
+    dispatch: Dispatch,
     /// The index of the point at each place.
     order: Vec<u32>,
     leaves: Vec<Leaf>,
@@ -76,7 +80,7 @@ impl KdTree {
     /// `accept` is asked at most once about a place if `found` was new, else at most twice.
     #[inline]
     pub fn nearest(&self, p: Vec3, k: usize, max_distance: f32, accept: impl Fn(u32) -> bool, found: &mut Nearest) {
-        self.vectorizer.run(search::NearestSearch {
+        self.dispatch.run(search::NearestSearch {
             tree: self,
             p,
             k,
@@ -89,7 +93,7 @@ impl KdTree {
     /// Calls `visit` with place and squared distance of each point at most `radius` away from `p`, in the order of places.
     #[inline]
     pub fn within(&self, p: Vec3, radius: f32, visit: impl FnMut(u32, f32)) {
-        self.vectorizer.run(search::WithinSearch {
+        self.dispatch.run(search::WithinSearch {
             tree: self,
             p,
             radius,

@@ -132,9 +132,14 @@ impl PhotonMap {
         sum.scaled(self.density_scale(r2))
     }
 
-    /// The irradiance, by wavelength, of the photons nearest to `receiver` that arrived on the side of its normal, without every
-    /// `stride`th: a receiver that is one of these is then independent of the photons that count, and does not see itself.
-    pub fn nearest_irradiance(
+    /// The irradiance, by wavelength, of the photons nearest to `receiver` that arrived on the side of its normal.
+    pub fn nearest_irradiance(&self, receiver: &Receiver, gathering: &Gathering, found: &mut Nearest) -> Carried {
+        self.irradiance_of(receiver, gathering, found, |_| true)
+    }
+
+    /// [`PhotonMap::nearest_irradiance`] without every `stride`th photon: a receiver that is one of these is then independent of
+    /// the photons that count, and does not see itself.
+    pub fn nearest_irradiance_of_others(
         &self,
         receiver: &Receiver,
         stride: u32,
@@ -142,10 +147,21 @@ impl PhotonMap {
         found: &mut Nearest,
     ) -> Carried {
         let order = self.tree.order();
-        let others = |place: u32, photon: &Photon| {
-            !order[place as usize].is_multiple_of(stride) && photon.wi().dot(receiver.ng) > 0.0
-        };
-        let r2 = self.find(receiver, gathering, found, others);
+        let others = |place: u32| !order[place as usize].is_multiple_of(stride);
+        let share = (stride - 1) as f32 / stride as f32;
+        self.irradiance_of(receiver, gathering, found, others)
+            .scaled(1.0 / share)
+    }
+
+    fn irradiance_of(
+        &self,
+        receiver: &Receiver,
+        gathering: &Gathering,
+        found: &mut Nearest,
+        counts: impl Fn(u32) -> bool,
+    ) -> Carried {
+        let is_wanted = |place: u32, photon: &Photon| counts(place) && photon.wi().dot(receiver.ng) > 0.0;
+        let r2 = self.find(receiver, gathering, found, is_wanted);
         let mut sum = Carried::default();
         for (&place, &d2) in found.places().iter().zip(found.distances_squared()) {
             if d2 < r2 {
@@ -153,8 +169,7 @@ impl PhotonMap {
                 sum.add(photon.power() * gathering.kernel.at(d2 / r2), photon.is_hero_only());
             }
         }
-        let share = (stride - 1) as f32 / stride as f32;
-        sum.scaled(self.density_scale(r2) / share)
+        sum.scaled(self.density_scale(r2))
     }
 
     /// Finds photons for an estimate; the squared radius of the disk that they stand for, inside of which those are that count.

@@ -22,11 +22,14 @@
 
 mod carried;
 mod eye;
+#[cfg(test)]
+mod flux_tests;
 mod gather;
 mod guide;
 mod irradiance;
 mod kd_tree;
 mod kernel;
+mod limits;
 mod map;
 mod passes;
 mod progressive;
@@ -40,6 +43,7 @@ use crate::desc::{PhotonDesc, SppmDesc};
 
 #[doc(hidden)]
 pub use kd_tree::{KdTree, Nearest};
+pub use limits::Limits;
 pub(super) use shoot::Stand;
 
 /// The two-pass renderer.
@@ -49,6 +53,17 @@ pub struct PhotonIntegrator {
     pub max_depth: Option<u32>,
     /// Its parameters.
     pub parameters: PhotonDesc,
+    /// Only the irradiance of this map is shown, if any.
+    pub shown: Option<ShownMap>,
+}
+
+/// A photon map to look at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShownMap {
+    /// Of photons that come by way of specular surfaces only.
+    Caustic,
+    /// Of all.
+    Global,
 }
 
 /// The progressive renderer.
@@ -58,6 +73,8 @@ pub struct SppmIntegrator {
     pub max_depth: Option<u32>,
     /// Its parameters.
     pub parameters: SppmDesc,
+    /// What may end it early.
+    pub limits: Limits,
 }
 
 /// Photons of all passes.

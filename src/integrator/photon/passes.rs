@@ -1,10 +1,13 @@
 //! Passes: photons first, then the camera paths of some samples, all at the wavelengths and the time of the pass.
 
+use std::time::Instant;
+
 use super::eye::Eye;
 use super::gather::{GatherPass, Maps, Strata};
 use super::guide::EmissionGuide;
 use super::irradiance::IrradianceMap;
 use super::kernel::Kernel;
+use super::limits::LimitedProgress;
 use super::map::{Gathering, PhotonMap};
 use super::progressive::{ProgressivePass, Radius, shrinkage};
 use super::shoot::{PhotonNumbers, Shot, Stand, Until, learn_caustics, moment_of, shoot};
@@ -97,15 +100,23 @@ impl PhotonIntegrator {
             let all = f64::from(wanted.unwrap_or(automatic));
             (all * share.min(1.0)).ceil() as u32
         };
-        // Only maps that are asked: indirect light asks both.
-        let terms = parameters.terms;
-        let count_if = |asked: bool, wanted, automatic| if asked { count(wanted, automatic) } else { 0 };
-        let caustic = count_if(
-            terms.caustic || terms.indirect,
-            parameters.caustic_photons,
-            CAUSTIC_PHOTONS,
+        let (mut caustic, mut global) = (
+            count(parameters.caustic_photons, CAUSTIC_PHOTONS),
+            count(parameters.global_photons, GLOBAL_PHOTONS),
         );
-        let global = count_if(terms.indirect, parameters.global_photons, GLOBAL_PHOTONS);
+        let mut terms = parameters.terms;
+        if self.shown.is_some() {
+            terms = Terms::NONE;
+        } else {
+            // Only maps that are asked; indirect light asks both.
+            if !terms.indirect {
+                global = 0;
+            }
+            if !(terms.indirect || terms.caustic) {
+                caustic = 0;
+            }
+        }
+        terms.indirect &= global > 0;
         let max_distance = parameters
             .max_distance
             .unwrap_or(MAX_DISTANCE * scene.bounds().radius());
@@ -113,10 +124,6 @@ impl PhotonIntegrator {
             count: parameters.used as usize,
             max_distance,
             kernel: Kernel::new(parameters.filter),
-        };
-        let terms = Terms {
-            indirect: global > 0,
-            ..terms
         };
         let mut render = Render::new(
             stand,
@@ -137,6 +144,7 @@ impl PhotonIntegrator {
                     max_depth: self.max_depth,
                     terms,
                 },
+                shown: self.shown,
                 moment,
                 maps: &maps,
                 gathering,
@@ -173,6 +181,7 @@ impl Maps {
 impl SppmIntegrator {
     /// Renders all passes, one for each sample of a pixel.
     pub(in crate::integrator) fn render(&self, stand: Stand<'_>, progress: &dyn Progress) -> RenderStats {
+        let start = Instant::now();
         let Stand { scene, view, film } = stand;
         let parameters = &self.parameters;
         let [width, height] = view.resolution;
@@ -180,6 +189,11 @@ impl SppmIntegrator {
         let aimed = (f64::from(photons) * CAUSTIC_SHARE) as u32;
         let mut render = Render::new(stand, self.max_depth, aimed, view.sampler.samples_per_pixel());
         let caustic = if render.guide.is_some() { aimed } else { 0 };
+        let progress = &LimitedProgress {
+            progress,
+            start,
+            time: self.limits.time,
+        };
         for (pass, samples) in passes(view, 1) {
             let moment = moment_of(view.sampler.seed(), pass);
             let estimator = ProgressivePass {
@@ -199,6 +213,11 @@ impl SppmIntegrator {
             };
             let of_pass = render_tiles(scene, view, film, &estimator, samples, progress);
             render.stats.merge(of_pass);
+            let done = pass + 1 - view.samples.start;
+            if self.limits.are_reached(start, film, done) {
+                render.stats.stopped_after = Some(done);
+                break;
+            }
         }
         render.stats
     }

@@ -30,7 +30,7 @@ pub(super) struct Radius {
     pub first: Option<f32>,
     /// What this pass's is of the first one's.
     pub shrinkage: f32,
-    /// Not more than this, in scene units.
+    /// Not more than this by default, in scene units.
     pub most: f32,
 }
 
@@ -101,13 +101,28 @@ impl ProgressivePass<'_> {
 impl Radius {
     /// Where a pixel sees `footprint`, in scene units.
     fn at(&self, footprint: f32) -> f32 {
-        (self.first.unwrap_or(PIXELS * footprint) * self.shrinkage).min(self.most)
+        match self.first {
+            Some(first) => first * self.shrinkage,
+            None => (PIXELS * footprint * self.shrinkage).min(self.most),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_radius_that_is_asked_for_is_used() {
+        let radius = |first| Radius {
+            first,
+            shrinkage: 0.5,
+            most: 0.1,
+        };
+        assert_eq!(radius(Some(3.0)).at(0.01), 1.5);
+        assert_eq!(radius(None).at(0.01), 0.015);
+        assert_eq!(radius(None).at(7.0), 0.1);
+    }
 
     #[test]
     fn areas_shrink_as_the_passes_to_the_power_of_a_third() {

@@ -6,11 +6,11 @@ use super::guide::{EmissionGuide, Pilot};
 use super::stored::Photon;
 use super::tracer::{Keep, Landed, PhotonTracer};
 use crate::film::Film;
+use crate::integrator::RenderStats;
 use crate::integrator::lane::Slot;
 use crate::integrator::numbers::EmissionNumbers;
 use crate::integrator::stage::Moment;
 use crate::integrator::wave::Wave;
-use crate::integrator::{DroppedSample, RenderStats};
 use crate::sampling::{SampleStream, Sampler, SamplerKind};
 use crate::scene::{Scene, View};
 use crate::spectrum::SampledSpectrum;
@@ -182,15 +182,9 @@ fn follow(
         landed.retain(|landed| !slots[landed.path as usize].broken);
         // Those of a path are found one after the other, with those of others between.
         landed.sort_by_key(|landed| landed.path);
-        let broken: Vec<u32> = slots
-            .iter()
-            .filter(|slot| slot.broken)
-            .map(|slot| slot.sample)
-            .collect();
+        let broken = slots.iter().filter(|slot| slot.broken).count();
         let mut stats = wave.take_stats();
-        for sample in broken {
-            stats.drop_sample(DroppedSample { pixel: [0, 0], sample });
-        }
+        stats.dropped_samples += broken as u64;
         Chunk {
             landed,
             paths: end - first,

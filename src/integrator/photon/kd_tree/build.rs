@@ -1,19 +1,25 @@
 //! Builds a tree.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use super::KdTree;
 use super::nodes::{LEAF, Leaf, Node, WIDTH};
-use crate::math::{Vec3, Vectorizer};
+use super::simd::Dispatch;
+use crate::math::{Vec3, Vec4};
 
 /// So many points are split by one thread.
 const SEQUENTIAL: usize = 1 << 12;
 
-/// A point on its way to its place.
+/// A point on its way to its place: its coordinates, and the bits of its index, so that it is one vector.
 #[derive(Clone, Copy, Debug)]
-struct Item {
-    p: [f32; 3],
-    index: u32,
+struct Item(Vec4);
+
+impl Item {
+    fn index(&self) -> u32 {
+        self.0.w.to_bits()
+    }
 }
 
 /// What a parent has to know of a leaf or a node.
@@ -25,10 +31,7 @@ struct Summary {
 
 pub fn build(points: &[Vec3]) -> KdTree {
     // Adding zero makes zeros positive.
-    let item = |(p, index): (&Vec3, u32)| Item {
-        p: (*p + Vec3::ZERO).to_array(),
-        index,
-    };
+    let item = |(p, index): (&Vec3, u32)| Item((*p + Vec3::ZERO).extend(f32::from_bits(index)));
     let mut items: Vec<_> = points.par_iter().zip(0..u32::MAX).map(item).collect();
     split(&mut items);
     let leaves = items.par_chunks(LEAF).map(leaf).collect();
@@ -47,8 +50,8 @@ pub fn build(points: &[Vec3]) -> KdTree {
         levels.push(start..nodes.len());
     }
     KdTree {
-        vectorizer: Vectorizer::default(),
-        order: items.par_iter().map(|item| item.index).collect(),
+        dispatch: Dispatch::default(),
+        order: items.par_iter().map(Item::index).collect(),
         leaves,
         nodes,
         first_indices,
@@ -63,10 +66,11 @@ fn split(items: &mut [Item]) {
         return;
     }
     let left = items.len().div_ceil(LEAF).next_power_of_two() / 2 * LEAF;
-    let axis = widest_axis(items);
-    items.select_nth_unstable_by_key(left, |item| {
-        (u64::from(sortable(item.p[axis])) << 32) | u64::from(item.index)
-    });
+    match widest_axis(items) {
+        0 => select::<0>(items, left),
+        1 => select::<1>(items, left),
+        _ => select::<2>(items, left),
+    }
     let (left, right) = items.split_at_mut(left);
     if right.len() > SEQUENTIAL {
         rayon::join(|| split(left), || split(right));
@@ -76,14 +80,22 @@ fn split(items: &mut [Item]) {
     }
 }
 
-/// Bits that are ordered as the numbers are.
-fn sortable(x: f32) -> u32 {
-    let bits = x.to_bits();
-    bits ^ (((bits as i32 >> 31) as u32) | 0x8000_0000)
+/// Puts the least items first, as many as `left`.
+fn select<const AXIS: usize>(items: &mut [Item], left: usize) {
+    items.select_nth_unstable_by(left, |a, b| {
+        let (x, y) = (a.0[AXIS], b.0[AXIS]);
+        if (x < y) | ((x == y) & (a.index() < b.index())) {
+            Ordering::Less
+        } else if a.index() == b.index() {
+            Ordering::Equal
+        } else {
+            Ordering::Greater
+        }
+    });
 }
 
 fn widest_axis(items: &[Item]) -> usize {
-    let Summary { min, max, .. } = summary(items);
+    let (min, max) = bounds(items);
     let extent = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     if extent[0] >= extent[1] && extent[0] >= extent[2] {
         0
@@ -94,23 +106,41 @@ fn widest_axis(items: &[Item]) -> usize {
     }
 }
 
-fn summary(items: &[Item]) -> Summary {
-    let mut all = Summary::EMPTY;
-    for item in items {
-        all.add(&Summary {
-            min: item.p,
-            max: item.p,
-            first_index: item.index,
-        });
+/// The box of points. Four are made side by side, so that none waits for the last.
+fn bounds(items: &[Item]) -> (Vec4, Vec4) {
+    let (mut min, mut max) = ([Vec4::INFINITY; 4], [Vec4::NEG_INFINITY; 4]);
+    let (chunks, rest) = items.as_chunks::<4>();
+    for chunk in chunks {
+        for i in 0..4 {
+            min[i] = min[i].min(chunk[i].0);
+            max[i] = max[i].max(chunk[i].0);
+        }
     }
-    all
+    for item in rest {
+        min[0] = min[0].min(item.0);
+        max[0] = max[0].max(item.0);
+    }
+    (
+        min[0].min(min[1]).min(min[2].min(min[3])),
+        max[0].max(max[1]).max(max[2].max(max[3])),
+    )
+}
+
+fn summary(items: &[Item]) -> Summary {
+    let (min, max) = bounds(items);
+    let first_index = items.iter().fold(u32::MAX, |first, item| first.min(item.index()));
+    Summary {
+        min: min.truncate().to_array(),
+        max: max.truncate().to_array(),
+        first_index,
+    }
 }
 
 fn leaf(items: &[Item]) -> Leaf {
     let mut leaf = Leaf::EMPTY;
     for (lane, item) in items.iter().enumerate() {
         for axis in 0..3 {
-            leaf.0[axis][lane] = item.p[axis];
+            leaf.0[axis].as_flattened_mut()[lane] = item.0[axis];
         }
     }
     leaf
@@ -134,21 +164,5 @@ fn summary_of_node((node, first_indices): (&Node, &[u32; WIDTH])) -> Summary {
         min,
         max,
         first_index: first_indices.iter().copied().fold(u32::MAX, u32::min),
-    }
-}
-
-impl Summary {
-    const EMPTY: Self = Self {
-        min: [f32::INFINITY; 3],
-        max: [f32::NEG_INFINITY; 3],
-        first_index: u32::MAX,
-    };
-
-    fn add(&mut self, other: &Self) {
-        for axis in 0..3 {
-            self.min[axis] = self.min[axis].min(other.min[axis]);
-            self.max[axis] = self.max[axis].max(other.max[axis]);
-        }
-        self.first_index = self.first_index.min(other.first_index);
     }
 }

@@ -1,10 +1,18 @@
 //! The nearest points found so far, and how far it is to the last of them.
 //!
 //! What is kept is the squared distances of whole leaves: where more than `k` lanes are within the bound, a new bound is found by
-//! counting lanes below a guess, and guessing again between two counts. On surfaces the number of points within a radius grows with
-//! its square, so that a guess on the line between two counts is nearly right. Nothing is moved, and no branch depends on a lane.
+//! counting lanes below a guess, and guessing again between two counts ([`Bracket`]). Nothing is moved, and hardly a branch depends on
+//! a lane. Only at the end the lanes within the bound are put together, in the order of places.
 
+use super::bracket::Bracket;
 use super::nodes::{LEAF, Lanes};
+use super::simd::{EIGHT, Simd};
+use crate::math::Vec3;
+
+/// How far a search may be from the last one, in radii of that, to learn from its radius.
+const MOVED: f32 = 2.0;
+/// How much greater its radius probably is at most. Where it is not, the search is done again.
+const GROWN: f32 = 1.15;
 
 /// What a search for nearest points found, and memory that the next search uses again.
 #[derive(Clone, Debug, Default)]
@@ -13,13 +21,16 @@ pub struct Nearest {
     distances_squared: Vec<f32>,
     radius_squared: f32,
     candidates: Candidates,
+    /// Where the last search was that found as many as were asked for, and what it asked for.
+    last: Option<(Vec3, usize, f32)>,
 }
 
 /// Leaves that have points within the bound.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     k: usize,
-    /// The squared distances of a leaf's points; infinite for a point that is no candidate.
+    /// The squared distances of a leaf's points; infinite for a point that is no candidate. Only the first ones, as many as `leaves`, mean
+    /// anything.
     lanes: Vec<Lanes>,
     /// Which leaf.
     leaves: Vec<u32>,
@@ -69,11 +80,29 @@ impl Nearest {
         self.radius_squared
     }
 
+    /// Within what squared distance of `p` there are probably `k` points, if the last search was near.
+    ///
+    /// Searches often follow one another closely.
+    #[inline(always)]
+    pub(super) fn likely_bound(&self, p: Vec3, k: usize) -> f32 {
+        match self.last {
+            Some((last, last_k, radius)) if last_k == k => {
+                let moved = last.distance(p);
+                let likely = (radius + moved).min(GROWN * radius);
+                if moved <= MOVED * radius {
+                    likely * likely
+                } else {
+                    f32::INFINITY
+                }
+            }
+            _ => f32::INFINITY,
+        }
+    }
+
     #[inline(always)]
     pub(super) fn start(&mut self, k: usize, bound: f32) -> &mut Candidates {
         let candidates = &mut self.candidates;
         candidates.k = k;
-        candidates.lanes.clear();
         candidates.leaves.clear();
         candidates.bound = bound;
         candidates.bound_index = u32::MAX;
@@ -84,28 +113,38 @@ impl Nearest {
 
     /// Takes the candidates as what was found, within `radius_squared`.
     #[inline(always)]
-    pub(super) fn finish(&mut self, order: &[u32], radius_squared: f32) {
+    pub(super) fn finish<S: Simd>(&mut self, simd: S, order: &[u32], p: Vec3, radius_squared: f32) {
         let Self { candidates, .. } = self;
-        self.places.clear();
-        self.distances_squared.clear();
         self.radius_squared = radius_squared;
-        if candidates.held >= candidates.k {
-            candidates.tighten_to(0);
+        let full = candidates.held >= candidates.k;
+        if full {
+            candidates.tighten_to(simd, 0);
             candidates.break_ties(order);
-            self.radius_squared = greatest(&candidates.lanes, candidates.bound);
         }
         candidates.sorted.clear();
         candidates.sorted.extend(candidates.leaves.iter().copied().zip(0..));
         candidates.sorted.sort_unstable();
+        self.places.resize(candidates.held, 0);
+        self.distances_squared.resize(candidates.held, 0.0);
+        let mut found = self.places.iter_mut().zip(&mut self.distances_squared);
         for &(leaf, block) in &candidates.sorted {
             let lanes = &candidates.lanes[block as usize];
-            let mut mask = at_most(lanes, candidates.bound);
+            let mut mask = mask(simd, lanes, candidates.bound);
             while mask != 0 {
-                let lane = mask.trailing_zeros();
+                let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                self.places.push(leaf * LEAF as u32 + lane);
-                self.distances_squared.push(lanes[lane as usize]);
+                if let Some((place, distance_squared)) = found.next() {
+                    *place = leaf * LEAF as u32 + lane as u32;
+                    *distance_squared = lanes[lane / EIGHT][lane % EIGHT];
+                }
             }
+        }
+        if full {
+            self.radius_squared = self
+                .distances_squared
+                .iter()
+                .fold(0.0, |a, b| if *b > a { *b } else { a });
+            self.last = Some((p, candidates.k, self.radius_squared.sqrt()));
         }
     }
 
@@ -125,6 +164,12 @@ impl Candidates {
             || (distance == self.bound && self.bound_index != u32::MAX && first_index() > self.bound_index)
     }
 
+    /// Whether there are as many as are asked for.
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.held >= self.k
+    }
+
     #[inline(always)]
     pub fn bound(&self) -> f32 {
         self.bound
@@ -132,95 +177,90 @@ impl Candidates {
 
     /// Adds the points of a leaf that are within the bound and taken by `accept`.
     #[inline(always)]
-    pub fn add(&mut self, leaf: u32, mut lanes: Lanes, order: &[u32], accept: impl Fn(u32) -> bool) {
-        if self.bound_index != u32::MAX {
-            self.drop_late_ties(leaf, &mut lanes, order);
+    pub fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        leaf: u32,
+        distances: [S::Vector; LEAF / EIGHT],
+        order: &[u32],
+        accept: impl Fn(u32) -> bool,
+    ) {
+        let bound = simd.splat(self.bound);
+        let mut within = 0;
+        for (i, v) in distances.iter().enumerate() {
+            within |= simd.at_most(*v, bound) << (i * EIGHT);
         }
-        let within = at_most(&lanes, self.bound);
         if within == 0 {
             return;
         }
-        let mut hits = within.count_ones();
+        let block = self.leaves.len();
+        if block == self.lanes.len() {
+            self.lanes.push(Default::default());
+        }
+        let lanes = &mut self.lanes[block];
+        for (lanes, v) in lanes.iter_mut().zip(distances) {
+            *lanes = simd.store(v);
+        }
+        let mut rejected = 0;
         let mut mask = within;
-        while mask != 0 {
+        // Counted, so that nothing is left of the loop where all are accepted.
+        for _ in 0..within.count_ones() {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
-            if !accept(leaf * LEAF as u32 + lane) {
-                lanes[lane as usize] = f32::INFINITY;
-                hits -= 1;
-            }
+            rejected |= u32::from(!accept(leaf * LEAF as u32 + lane)) << lane;
         }
-        self.lanes.push(lanes);
+        if self.bound_index != u32::MAX {
+            rejected |= late_ties(lanes, order, leaf, (self.bound, self.bound_index));
+        }
+        if rejected != 0 {
+            reject(lanes, rejected);
+        }
         self.leaves.push(leaf);
-        self.held += hits as usize;
+        self.held += (within & !rejected).count_ones() as usize;
         if self.held >= self.enough {
-            self.tighten(order);
-        }
-    }
-
-    /// Of what ties with the bound, only those of lower index than what was found can be among the nearest.
-    #[cold]
-    fn drop_late_ties(&self, leaf: u32, lanes: &mut Lanes, order: &[u32]) {
-        for (d, index) in lanes.iter_mut().zip(&order[leaf as usize * LEAF..]) {
-            if *d == self.bound && *index > self.bound_index {
-                *d = f32::INFINITY;
-            }
+            self.tighten(simd, order);
         }
     }
 
     /// Lowers the bound, as far as there are `k` candidates within.
     #[inline(always)]
-    fn tighten(&mut self, order: &[u32]) {
-        self.tighten_to(self.k / 16);
-        self.enough = self.held + (self.k / 8).max(8);
-        if self.lanes.len() > 2 * self.k + 32 {
-            self.compact(order);
+    fn tighten<S: Simd>(&mut self, simd: S, order: &[u32]) {
+        let slack = self.k / 4;
+        self.tighten_to(simd, slack);
+        // What is left over ties. The more of it there is, the more it matters to have done with it.
+        if self.held > self.k + slack {
+            self.drop_ties(order);
+        }
+        self.enough = self.held + (self.k / 2).max(8);
+        if self.leaves.len() > 2 * self.k + 32 {
+            self.compact(simd, order);
         }
     }
 
     /// Lowers the bound until at most `slack` candidates more than `k` are within, or all the others tie.
     #[inline(always)]
-    fn tighten_to(&mut self, slack: usize) {
-        // Candidates up to `low` are fewer than `k`, those up to `high` are not. Below 0 there are none.
-        let mut low = (-1, 0);
-        let mut high = (i64::from(greatest(&self.lanes, self.bound).to_bits()), self.held);
-        let wanted = self.k as f32 + 0.5 * slack as f32;
-        for step in 0.. {
-            if high.1 <= self.k + slack || high.0 - low.0 == 1 {
-                break;
-            }
-            let guess = if step % 4 == 3 {
-                // The numbers of floats are bisected, in case that guesses go astray.
-                (low.0 + high.0) / 2
-            } else {
-                let (from, to) = (f32::from_bits(low.0.max(0) as u32), f32::from_bits(high.0 as u32));
-                let part = (wanted - low.1 as f32) / (high.1 - low.1) as f32;
-                i64::from((from + part * (to - from)).to_bits()).clamp(low.0 + 1, high.0 - 1)
-            };
-            let count = count(&self.lanes, f32::from_bits(guess as u32));
-            if count < self.k {
-                low = (guess, count);
-            } else {
-                high = (guess, count);
-            }
+    fn tighten_to<S: Simd>(&mut self, simd: S, slack: usize) {
+        let blocks = &self.lanes[..self.leaves.len()];
+        let mut bracket = Bracket::new(self.k, slack, greatest(simd, blocks, self.bound), self.held);
+        while let Some(guess) = bracket.guess() {
+            bracket.narrow(guess, count(simd, blocks, guess));
         }
-        (self.bound, self.held) = (f32::from_bits(high.0 as u32), high.1);
+        (self.bound, self.held) = bracket.bound();
     }
 
     /// Keeps only leaves that have candidates, and exactly `k` of these.
-    #[cold]
-    fn compact(&mut self, order: &[u32]) {
-        self.tighten_to(0);
+    #[inline(always)]
+    fn compact<S: Simd>(&mut self, simd: S, order: &[u32]) {
+        self.tighten_to(simd, 0);
         self.break_ties(order);
         let mut kept = 0;
-        for block in 0..self.lanes.len() {
-            if at_most(&self.lanes[block], self.bound) != 0 {
+        for block in 0..self.leaves.len() {
+            if mask(simd, &self.lanes[block], self.bound) != 0 {
                 self.lanes[kept] = self.lanes[block];
                 self.leaves[kept] = self.leaves[block];
                 kept += 1;
             }
         }
-        self.lanes.truncate(kept);
         self.leaves.truncate(kept);
     }
 
@@ -236,7 +276,7 @@ impl Candidates {
     fn drop_ties(&mut self, order: &[u32]) {
         self.ties.clear();
         for (block, (lanes, leaf)) in (0..).zip(self.lanes.iter().zip(&self.leaves)) {
-            for (lane, d) in (0..).zip(lanes) {
+            for (lane, d) in (0..).zip(lanes.as_flattened()) {
                 if *d == self.bound {
                     let place = *leaf as usize * LEAF + lane as usize;
                     self.ties.push((order[place], block * LEAF as u32 + lane));
@@ -246,44 +286,58 @@ impl Candidates {
         let kept = self.ties.len() - (self.held - self.k);
         let (_, &mut (first_dropped, _), _) = self.ties.select_nth_unstable(kept);
         for (_, lane) in &self.ties[kept..] {
-            self.lanes[*lane as usize / LEAF][*lane as usize % LEAF] = f32::INFINITY;
+            self.lanes[*lane as usize / LEAF].as_flattened_mut()[*lane as usize % LEAF] = f32::INFINITY;
         }
         self.held = self.k;
         self.bound_index = first_dropped - 1;
     }
 }
 
+/// A bit for each lane that equals the bound with a higher index than it.
+#[cold]
+fn late_ties(lanes: &Lanes, order: &[u32], leaf: u32, (bound, bound_index): (f32, u32)) -> u32 {
+    let points = lanes.as_flattened().iter().zip(&order[leaf as usize * LEAF..]);
+    let late = points.map(|(d, index)| *d == bound && *index > bound_index);
+    late.zip(0..).map(|(late, lane)| u32::from(late) << lane).sum()
+}
+
+/// Makes lanes infinite, so that they are no candidates.
+#[inline(always)]
+fn reject(lanes: &mut Lanes, mask: u32) {
+    for (lane, d) in lanes.as_flattened_mut().iter_mut().enumerate() {
+        *d = if mask >> lane & 1 == 1 { f32::INFINITY } else { *d };
+    }
+}
+
 /// A bit for each lane that is at most `bound`.
 #[inline(always)]
-fn at_most(lanes: &Lanes, bound: f32) -> u32 {
+fn mask<S: Simd>(simd: S, lanes: &Lanes, bound: f32) -> u32 {
     let mut mask = 0;
-    for (lane, d) in lanes.iter().enumerate() {
-        mask |= u32::from(*d <= bound) << lane;
+    for (i, v) in lanes.iter().enumerate() {
+        mask |= simd.at_most(simd.load(v), simd.splat(bound)) << (i * EIGHT);
     }
     mask
 }
 
 /// The number of lanes that are at most `bound`.
 #[inline(always)]
-fn count(lanes: &[Lanes], bound: f32) -> usize {
-    let mut counts = [0u32; LEAF];
-    for lanes in lanes {
-        for (count, d) in counts.iter_mut().zip(lanes) {
-            *count += u32::from(*d <= bound);
-        }
+fn count<S: Simd>(simd: S, blocks: &[Lanes], bound: f32) -> usize {
+    let mut count = 0;
+    for lanes in blocks {
+        count += mask(simd, lanes, bound).count_ones();
     }
-    counts.iter().sum::<u32>() as usize
+    count as usize
 }
 
 /// The greatest lane that is at most `bound`.
 #[inline(always)]
-fn greatest(lanes: &[Lanes], bound: f32) -> f32 {
-    let mut greatest = [0.0; LEAF];
-    for lanes in lanes {
-        for (greatest, d) in greatest.iter_mut().zip(lanes) {
-            let d = if *d <= bound { *d } else { 0.0 };
-            *greatest = if d > *greatest { d } else { *greatest };
-        }
+fn greatest<S: Simd>(simd: S, blocks: &[Lanes], bound: f32) -> f32 {
+    let bound = simd.splat(bound);
+    let mut greatest = simd.splat(0.0);
+    for v in blocks.as_flattened() {
+        greatest = simd.max(simd.keep_at_most(simd.load(v), bound), greatest);
     }
-    greatest.into_iter().fold(0.0, |a, b| if b > a { b } else { a })
+    simd.store(greatest)
+        .into_iter()
+        .fold(0.0, |a, b| if b > a { b } else { a })
 }

@@ -1,14 +1,17 @@
 //! What a tree consists of.
 
+use super::simd::{EIGHT, Simd};
 use crate::math::Vec3;
 
 /// Children of a node.
-pub const WIDTH: usize = 8;
+pub const WIDTH: usize = EIGHT;
+/// Vectors of a leaf.
+const VECTORS: usize = 4;
 /// Points of a leaf.
-pub const LEAF: usize = 32;
+pub const LEAF: usize = VECTORS * EIGHT;
 
 /// A number for each point of a leaf.
-pub type Lanes = [f32; LEAF];
+pub type Lanes = [[f32; EIGHT]; VECTORS];
 
 /// Points, by axis. The last leaf may have fewer, and no numbers in the lanes left over: comparisons with them are false.
 #[derive(Clone, Debug)]
@@ -23,14 +26,30 @@ pub struct Node {
     pub max: [[f32; WIDTH]; 3],
 }
 
-impl Leaf {
-    pub const EMPTY: Self = Self([[f32::NAN; LEAF]; 3]);
+/// A point to search around, in every lane.
+#[derive(Clone, Copy)]
+pub struct Center<V>([V; 3]);
 
-    /// The squared distances from `p`.
+impl<V> Center<V> {
     #[inline(always)]
-    pub fn distances(&self, p: Vec3) -> Lanes {
-        let [x, y, z] = &self.0;
-        std::array::from_fn(|i| squared(x[i] - p.x, y[i] - p.y, z[i] - p.z))
+    pub fn new<S: Simd<Vector = V>>(simd: S, p: Vec3) -> Self {
+        Self([simd.splat(p.x), simd.splat(p.y), simd.splat(p.z)])
+    }
+}
+
+impl Leaf {
+    pub const EMPTY: Self = Self([[[f32::NAN; EIGHT]; VECTORS]; 3]);
+
+    /// The squared distances of its points.
+    #[inline(always)]
+    pub fn distances<S: Simd>(&self, simd: S, center: &Center<S::Vector>) -> [S::Vector; VECTORS] {
+        let (Self([x, y, z]), [px, py, pz]) = (self, center.0);
+        let mut distances = [px; VECTORS];
+        for (i, distance) in distances.iter_mut().enumerate() {
+            let (x, y, z) = (simd.load(&x[i]), simd.load(&y[i]), simd.load(&z[i]));
+            *distance = simd.length_squared([simd.sub(x, px), simd.sub(y, py), simd.sub(z, pz)]);
+        }
+        distances
     }
 }
 
@@ -40,19 +59,17 @@ impl Node {
         max: [[f32::NEG_INFINITY; WIDTH]; 3],
     };
 
-    /// The squared distances from `p` to the boxes: at most those that [`Leaf::distances`] gives for points within.
+    /// The squared distances of its boxes: at most those that [`Leaf::distances`] gives for points within.
     #[inline(always)]
-    pub fn distances(&self, p: Vec3) -> [f32; WIDTH] {
-        let Self { min, max } = self;
-        let p = p.to_array();
-        std::array::from_fn(|i| {
-            let [dx, dy, dz] = [0, 1, 2].map(|axis| {
-                let (below, above) = (min[axis][i] - p[axis], p[axis] - max[axis][i]);
-                let d = if below > above { below } else { above };
-                if d > 0.0 { d } else { 0.0 }
-            });
-            squared(dx, dy, dz)
-        })
+    pub fn distances<S: Simd>(&self, simd: S, center: &Center<S::Vector>) -> S::Vector {
+        let zero = simd.splat(0.0);
+        let mut offset = center.0;
+        for (axis, p) in offset.iter_mut().enumerate() {
+            let below = simd.sub(simd.load(&self.min[axis]), *p);
+            let above = simd.sub(*p, simd.load(&self.max[axis]));
+            *p = simd.max(simd.max(below, above), zero);
+        }
+        simd.length_squared(offset)
     }
 
     /// The box of all children.
@@ -62,9 +79,4 @@ impl Node {
             self.max.map(|axis| axis.into_iter().fold(f32::NEG_INFINITY, f32::max)),
         )
     }
-}
-
-#[inline(always)]
-fn squared(dx: f32, dy: f32, dz: f32) -> f32 {
-    (dx * dx + dy * dy) + dz * dz
 }

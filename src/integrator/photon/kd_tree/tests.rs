@@ -263,3 +263,19 @@ fn a_batch_finds_what_its_queries_find() {
         assert!(times.iter().all(|n| *n == 1), "points {name}: each query once");
     }
 }
+
+#[test]
+fn of_many_points_equally_far_few_are_looked_at() {
+    let tree = KdTree::build(&vec![Vec3::ONE; 100_000]);
+    let mut found = Nearest::new();
+    let asked = std::cell::Cell::new(0);
+    let accept = |_: u32| {
+        asked.set(asked.get() + 1);
+        true
+    };
+    tree.nearest(Vec3::ZERO, 50, f32::INFINITY, accept, &mut found);
+    assert_eq!(found.len(), 50);
+    assert!(found.places().iter().all(|place| tree.order()[*place as usize] < 50));
+    // Two leaves have enough of them.
+    assert!(asked.get() <= 4 * LEAF, "{} points looked at", asked.get());
+}
