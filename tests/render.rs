@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use common::means::{Estimate, FEWEST_RUNS, Means};
 use common::render::{Built, MODES, blocks, combinations, parse};
 use lucerna::accel::Backend;
-use lucerna::desc::{ParseOptions, load};
+use lucerna::desc::{IntegratorKind, ParseOptions, load};
 use lucerna::film::PixelRect;
 use lucerna::integrator::{Integrator, Silent};
 use lucerna::sampling::SamplerKind;
@@ -252,7 +252,11 @@ fn samplers_agree_in_the_mean() {
 fn backends_agree_on_every_scene() {
     for path in scene_files() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        let desc = load(&path, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        let mut desc = load(&path, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        if let IntegratorKind::Photon(parameters) = &mut desc.integrator.kind {
+            // As many as a picture of this size needs.
+            (parameters.caustic_photons, parameters.global_photons) = (Some(10_000), Some(5_000));
+        }
         for color in MODES {
             let pictures: Vec<Vec<f32>> = Backend::AVAILABLE
                 .iter()

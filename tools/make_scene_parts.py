@@ -11,7 +11,7 @@ import pathlib
 import lamps
 import plants
 from pictures import png
-from ply import Mesh, lathe, spline
+from ply import Mesh, lathe, normalize, spline
 
 PARTS = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "parts"
 
@@ -84,6 +84,48 @@ def backdrop():
     for row in range(len(profile) - 1):
         a = 2 * row
         mesh.triangles += [(a, a + 2, a + 3), (a, a + 3, a + 1)]
+    return mesh
+
+
+def ring():
+    """A ring of outer radius 1.06 and inner radius 1, 0.36 high, its edges rounded, around the y axis; it stands on y = 0."""
+    edge = 0.03
+    outer, inner = 1.03, 1.03
+
+    def quarter(height, first):
+        return [
+            (outer + edge * math.cos(a), height + edge * math.sin(a)) for a in (math.radians(first + 22.5 * k) for k in range(5))
+        ]
+
+    low, high = edge, 0.36 - edge
+    profile = quarter(low, -90) + quarter(high, 0) + quarter(high, 90)[1:] + quarter(low, 180)
+    return lathe(profile, 192)
+
+
+def waves():
+    """The surface of a pool, y near 0, -1.62 to 1.62 in x and z: waves that run in many directions, with their true normals."""
+    mesh = Mesh()
+    count, half = 96, 1.62
+    trains = []
+    for k in range(9):
+        angle = 2.4 * k + 0.5
+        number = 3.4 + 1.15 * k
+        trains.append((number * math.cos(angle), number * math.sin(angle), 0.32 / number**1.75, 1.7 * k * k))
+    for i in range(count + 1):
+        for j in range(count + 1):
+            x, z = half * (2 * i / count - 1), half * (2 * j / count - 1)
+            y, slope_x, slope_z = 0.0, 0.0, 0.0
+            for kx, kz, height, phase in trains:
+                y += height * math.sin(kx * x + kz * z + phase)
+                slope = height * math.cos(kx * x + kz * z + phase)
+                slope_x, slope_z = slope_x + kx * slope, slope_z + kz * slope
+            mesh.points.append((x, y, z))
+            mesh.normals.append(normalize((-slope_x, 1.0, -slope_z)))
+    for i in range(count):
+        for j in range(count):
+            a = i * (count + 1) + j
+            b = a + count + 1
+            mesh.triangles += [(a, a + 1, b + 1), (a, b + 1, b)]
     return mesh
 
 
@@ -178,6 +220,30 @@ def brick_normal(x, y):
     return tuple(round(127.5 * (1 + c / length)) for c in n)
 
 
+def tile_colour(x, y):
+    """Tiles of 12 pixels with joints of one, 10 by 10, of blues that differ a little."""
+    column, row = x // 13, y // 13
+    if x % 13 == 12 or y % 13 == 12:
+        return (188, 200, 200)
+    shade = (math.sin(column * 12.9898 + row * 78.233) * 43758.5453) % 1.0
+    light = 0.86 + 0.14 * shade
+    return tuple(round(light * c) for c in (96, 182, 208))
+
+
+def plank_colour(x, y):
+    """Boards of 64 pixels along y, of light wood: grain that wanders, and a dark joint between boards."""
+    board, across = x // 64, x % 64
+    seed = (math.sin(board * 12.9898 + 4.0) * 43758.5453) % 1.0
+    turn = 2 * math.pi * y / 256
+    wander = 5 * math.sin(turn + 9 * seed) + 2 * math.sin(3 * turn + 17 * seed) + 0.8 * math.sin(7 * turn + 5 * seed)
+    u = across + wander + 40 * seed
+    grain = 0.5 + 0.25 * math.sin(0.55 * u) + 0.15 * math.sin(1.31 * u + 0.5 * math.sin(2 * turn)) + 0.1 * math.sin(2.9 * u)
+    light = (0.86 + 0.14 * grain) * (0.94 + 0.06 * seed)
+    if across == 0:
+        light *= 0.72
+    return tuple(round(light * c) for c in (226, 196, 158))
+
+
 def leaf_alpha(x, y):
     """A leaf of five lobes, white on black, smooth at its edge."""
     u, v = (x - 63.5) / 64, (63.5 - y) / 64
@@ -195,6 +261,8 @@ def main():
         "bricks": png(64, 64, brick_colour),
         "bricks-normal": png(64, 64, brick_normal),
         "leaf": png(128, 128, leaf_alpha),
+        "planks": png(256, 256, plank_colour),
+        "tiles": png(130, 130, tile_colour),
     }
     for name, content in pictures.items():
         path = PARTS / f"{name}.png"
@@ -207,7 +275,9 @@ def main():
         "gem": gem(),
         "goblet": goblet(),
         "pawn": pawn(),
+        "ring": ring(),
         "vane": vane(),
+        "waves": waves(),
         **lamps.meshes(),
         **plants.meshes(),
     }

@@ -100,8 +100,23 @@ impl PhotonIntegrator {
             let all = f64::from(wanted.unwrap_or(automatic));
             (all * share.min(1.0)).ceil() as u32
         };
-        let caustic = count(parameters.caustic_photons, CAUSTIC_PHOTONS);
-        let global = count(parameters.global_photons, GLOBAL_PHOTONS);
+        let (mut caustic, mut global) = (
+            count(parameters.caustic_photons, CAUSTIC_PHOTONS),
+            count(parameters.global_photons, GLOBAL_PHOTONS),
+        );
+        let mut terms = parameters.terms;
+        if self.shown.is_some() {
+            terms = Terms::NONE;
+        } else {
+            // Only maps that are asked; indirect light asks both.
+            if !terms.indirect {
+                global = 0;
+            }
+            if !(terms.indirect || terms.caustic) {
+                caustic = 0;
+            }
+        }
+        terms.indirect &= global > 0;
         let max_distance = parameters
             .max_distance
             .unwrap_or(MAX_DISTANCE * scene.bounds().radius());
@@ -110,11 +125,6 @@ impl PhotonIntegrator {
             max_distance,
             kernel: Kernel::new(parameters.filter),
         };
-        let mut terms = parameters.terms;
-        terms.indirect &= global > 0;
-        if self.shown.is_some() {
-            terms = Terms::NONE;
-        }
         let mut render = Render::new(
             stand,
             self.max_depth,
