@@ -36,7 +36,7 @@ fn an_error_is_shown_with_its_line() {
 fn lenient_reading_turns_the_unknown_into_warnings() {
     let text = r#"
         Film "gbuffer"
-        Sampler "new" Integrator "sppm" PixelFilter "new" Camera "spherical"
+        Sampler "new" Integrator "mlt" PixelFilter "new" Camera "spherical"
         ColorSpace "rec2021"
         WorldBegin
         Texture "a" "spectrum" "ptex" "string filename" "x"

@@ -36,13 +36,75 @@ fn options() {
             "",
         ),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),
-        ("Integrator @\"sppm\" WorldBegin", "not supported yet", ""),
+        ("Integrator @\"mlt\" WorldBegin", "not supported yet", ""),
         ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
         ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
         ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
         (
             "Integrator \"path\" @\"bool regularize\" true WorldBegin",
             "`regularize`",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn photon_mapping() {
+    let cases: [Case; 11] = [
+        (
+            "Integrator \"photon\" \"integer passes\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer causticphotons\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer globalphotons\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer nused\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"float maxdist\" @-1 WorldBegin",
+            "must be 0 or more",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer finalgathersamples\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"string filter\" @\"con\" WorldBegin",
+            "`filter` is one of",
+            "`cone`",
+        ),
+        (
+            "Integrator \"photon\" @\"float radius\" 1 WorldBegin",
+            "no parameter `radius`",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" \"integer photonsperiteration\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" \"float radius\" @-1 WorldBegin",
+            "must be 0 or more",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" @\"integer passes\" 3 WorldBegin",
+            "no parameter `passes`",
             "",
         ),
     ];
