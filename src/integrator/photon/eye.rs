@@ -154,6 +154,8 @@ impl Eye {
             origin: origin_of(event, sample, 1),
             term: specular(lane.state.term),
             phase: match lane.state.phase {
+                // In a corner it belongs to a gather ray, and light that is met now to the caustics of where that came from.
+                Phase::Eye if lane.state.term == Term::Indirect => Phase::GatherBySpecular,
                 Phase::Eye => Phase::Eye,
                 Phase::Gather | Phase::GatherBySpecular => Phase::GatherBySpecular,
             },

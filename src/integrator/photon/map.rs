@@ -53,9 +53,15 @@ impl Receiver {
     fn accepts(&self, photon: &Photon) -> bool {
         let d = photon.p() - self.p;
         let height = d.dot(self.ng).abs() - self.error;
-        (height <= 0.0 || height * height <= MOST_ELEVATION * MOST_ELEVATION * d.length_squared())
-            && photon.depth() <= self.max_depth
-            && photon.ng().dot(self.ng).abs() >= LEAST_NORMAL_COS
+        if (height > 0.0 && height * height > MOST_ELEVATION * MOST_ELEVATION * d.length_squared())
+            || photon.depth() > self.max_depth
+        {
+            return false;
+        }
+        let (ng, wi) = (photon.ng(), photon.wi());
+        let cos = ng.dot(self.ng);
+        // Light that arrived behind a surface is behind its neighbour too, though it may have come from above that one's plane.
+        cos.abs() >= LEAST_NORMAL_COS && ng.dot(wi) * self.ng.dot(wi) * cos > 0.0
     }
 }
 

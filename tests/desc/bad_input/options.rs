@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn options() {
-    let cases: [Case; 18] = [
+    let cases: [Case; 12] = [
         (
             "Sampler \"sobol\" \"integer pixelsamples\" @0 WorldBegin",
             "must be 1 to 16777216",
@@ -37,6 +37,21 @@ fn options() {
         ),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),
         ("Integrator @\"mlt\" WorldBegin", "not supported yet", ""),
+        ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
+        ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
+        ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
+        (
+            "Integrator \"path\" @\"bool regularize\" true WorldBegin",
+            "`regularize`",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn photon_mapping() {
+    let cases: [Case; 11] = [
         (
             "Integrator \"photon\" \"integer passes\" @0 WorldBegin",
             "must be 1 to",
@@ -44,6 +59,11 @@ fn options() {
         ),
         (
             "Integrator \"photon\" \"integer causticphotons\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"integer globalphotons\" @-2 WorldBegin",
             "must be -1 to",
             "",
         ),
@@ -58,21 +78,33 @@ fn options() {
             "",
         ),
         (
+            "Integrator \"photon\" \"integer finalgathersamples\" @0 WorldBegin",
+            "must be 1 to",
+            "",
+        ),
+        (
+            "Integrator \"photon\" \"string filter\" @\"con\" WorldBegin",
+            "`filter` is one of",
+            "`cone`",
+        ),
+        (
+            "Integrator \"photon\" @\"float radius\" 1 WorldBegin",
+            "no parameter `radius`",
+            "",
+        ),
+        (
+            "Integrator \"sppm\" \"integer photonsperiteration\" @-2 WorldBegin",
+            "must be -1 to",
+            "",
+        ),
+        (
             "Integrator \"sppm\" \"float radius\" @-1 WorldBegin",
             "must be 0 or more",
             "",
         ),
         (
-            "Integrator \"sppm\" \"string filter\" @\"con\" WorldBegin",
-            "`filter` is one of",
-            "`cone`",
-        ),
-        ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
-        ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
-        ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
-        (
-            "Integrator \"path\" @\"bool regularize\" true WorldBegin",
-            "`regularize`",
+            "Integrator \"sppm\" @\"integer passes\" 3 WorldBegin",
+            "no parameter `passes`",
             "",
         ),
     ];
