@@ -41,7 +41,7 @@ fn flux(inside: &str, keep: Keep, max_depth: Option<u32>, until: Until, is_guide
     };
     let mut stats = RenderStats::default();
     let guide: Option<EmissionGuide> =
-        is_guided.then(|| learn_caustics(stand, max_depth, &mut stats).expect("caustics"));
+        is_guided.then(|| learn_caustics(stand, max_depth, 1 << 18, &mut stats).expect("caustics"));
     let tracer = PhotonTracer {
         keep,
         max_depth,
