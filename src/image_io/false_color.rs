@@ -20,11 +20,8 @@ pub fn false_colors(pixels: &mut [f32]) {
     let mean = |rgb: &[f32]| (rgb.iter().sum::<f32>() / 3.0).max(0.0);
     let mut sorted: Vec<f32> = pixels.chunks_exact(3).map(mean).collect();
     sorted.sort_unstable_by(f32::total_cmp);
-    let last = ((1.0 - OUTLIERS) * sorted.len() as f64) as usize;
-    let most = sorted
-        .get(last.min(sorted.len().saturating_sub(1)))
-        .copied()
-        .unwrap_or(0.0);
+    let outliers = (OUTLIERS * sorted.len() as f64) as usize;
+    let most = sorted.iter().rev().nth(outliers).copied().unwrap_or(0.0);
     for rgb in pixels.chunks_exact_mut(3) {
         rgb.copy_from_slice(&color(mean(rgb) / most));
     }

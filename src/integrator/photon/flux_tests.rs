@@ -84,7 +84,7 @@ const MIRROR: &str = r#"LightSource "point" "point3 from" [0.1 -0.2 0.9] "rgb I"
 fn a_closed_box_keeps_the_emitted_power_times_the_series_of_its_albedo() {
     let power = 4.0 * PI;
     let of = |inside, keep, depth, until| flux(inside, keep, depth, until, false);
-    for until in [Until::Emitted(20_000), Until::Stored(40_000)] {
+    for until in [Until::Emitted(30_000), Until::Stored(60_000)] {
         let (all, indirect) = (
             of(POINT, Keep::All, None, until),
             of(IN_GLASS, Keep::Indirect, None, until),
@@ -92,7 +92,7 @@ fn a_closed_box_keeps_the_emitted_power_times_the_series_of_its_albedo() {
         assert_flux(all, power / (1.0 - 0.5), "all");
         assert_flux(indirect, power * 0.5 / (1.0 - 0.5), "indirect, in glass");
     }
-    let short = of(POINT, Keep::All, Some(3), Until::Emitted(20_000));
+    let short = of(POINT, Keep::All, Some(3), Until::Emitted(30_000));
     assert_flux(short, power * (1.0 + 0.5 + 0.25), "all to depth 3");
 }
 
@@ -103,7 +103,7 @@ fn caustic_photons_bring_the_same_flux_wherever_they_are_aimed() {
     let part = 0.5 * (1.0 - (1.0 - (0.4 / d).powi(2)).sqrt());
     for is_guided in [false, true] {
         let name = if is_guided { "aimed" } else { "not aimed" };
-        let caustic = |inside| flux(inside, Keep::Caustic, None, Until::Emitted(20_000), is_guided);
+        let caustic = |inside| flux(inside, Keep::Caustic, None, Until::Emitted(30_000), is_guided);
         assert_flux(caustic(IN_GLASS), 4.0 * PI, &format!("in glass, {name}"));
         assert_flux(caustic(MIRROR), 4.0 * PI * part, &format!("mirror, {name}"));
     }
