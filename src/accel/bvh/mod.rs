@@ -10,10 +10,13 @@ mod bins;
 mod build;
 mod collapse;
 mod kernel;
+mod lanes;
 mod leaf;
 mod node;
+mod packet;
 pub(super) mod query;
 pub(super) mod ray;
+mod stream;
 mod traverse;
 mod tree;
 pub(super) mod triangle;
@@ -23,7 +26,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use self::kernel::{Kernel, Portable};
-use self::query::Query;
+use self::query::{Asked, Query};
 use self::ray::{LocalRay, direction_scale};
 use self::traverse::{Level, STACK};
 use self::tree::GroupTrees;
@@ -134,7 +137,11 @@ impl Scene {
         }
         let ray = packet.get(lane);
         let scale = direction_scale(ray.direction);
-        let mut query = Query::new(&ray, scale, filter, &self.filtered);
+        let asked = Asked {
+            filter,
+            filtered: &self.filtered,
+        };
+        let mut query = Query::new(&ray, scale, asked);
         let local = LocalRay::new(ray.origin, ray.direction * scale);
         let level = Level {
             trees: &self.top,
@@ -180,9 +187,13 @@ impl Scene {
 }
 
 impl Accel for Bvh {
-    fn intersect(&self, _kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
+    fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
         match self.instructions {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) if self.scene.takes_packets() => {
+                kernel.intersect(&self.scene, kind, rays, hits, filter)
+            }
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(kernel) => self.scene.intersect(kernel, rays, hits, filter),
             Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
@@ -191,6 +202,8 @@ impl Accel for Bvh {
 
     fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         match self.instructions {
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) if self.scene.takes_packets() => kernel.occluded(&self.scene, rays, filter),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
             Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),

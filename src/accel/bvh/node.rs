@@ -151,6 +151,14 @@ fn slots<B>(children: &[(ChildRef, B)]) -> [ChildRef; WIDTH] {
     std::array::from_fn(|slot| children.get(slot).map_or(ChildRef::ROOT, |child| child.0))
 }
 
+impl FixedNode {
+    /// The boxes of the children.
+    #[inline(always)]
+    pub fn fixed_planes(&self) -> &Planes {
+        &self.planes
+    }
+}
+
 impl Node for FixedNode {
     type Bounds = Bounds3;
 

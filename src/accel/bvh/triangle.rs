@@ -151,11 +151,14 @@ impl Sheared {
 
 /// The plane of a triangle.
 struct Plane {
+    /// One of its corners.
     corner: [f64; 3],
+    /// Twice its area, across it.
     normal: [f64; 3],
 }
 
 impl Plane {
+    /// With its axes in the order of `axes`.
     #[inline(always)]
     fn new(corners: &[[f32; 3]; 3], axes: [usize; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| axes.map(|axis| f64::from(corner[axis])));

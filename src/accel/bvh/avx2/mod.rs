@@ -4,26 +4,71 @@
 // Vector instructions are intrinsics, which are unsafe where the processor may not have them.
 #![allow(unsafe_code)]
 
+mod lanes;
+
 use std::arch::x86_64::*;
 
 use super::Scene;
 use super::kernel::{BoxHits, Kernel, TriangleHits};
 use super::leaf::{BlockIds, Corners, LANES};
+use super::node::ChildRef;
 use super::node::{Planes, WIDTH};
 use super::query::Query;
-use super::ray::{FAR_SLACK, LocalRay, NEAR_SLACK, Slab};
-use super::traverse::{self, Level};
+use super::ray::{LocalRay, Slab};
+use super::stream;
+use super::traverse::{self, Level, Walk};
+use super::tree::FixedTree;
 use super::triangle::Shear;
+use crate::accel::{HitFilter, RayKind};
+use crate::geometry::{HitPacket, RayPacket};
 
-/// Proof that the processor has AVX2.
+/// Proof that the processor has AVX2 and fused multiply-add.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx2(());
 
 impl Avx2 {
     /// If the processor has it.
     pub fn detect() -> Option<Self> {
-        std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
+        (std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")).then_some(Self(()))
     }
+}
+
+impl Avx2 {
+    /// Nearest hits, by packets.
+    pub fn intersect(
+        self,
+        scene: &Scene,
+        kind: RayKind,
+        rays: &[RayPacket],
+        hits: &mut [HitPacket],
+        filter: Option<&dyn HitFilter>,
+    ) {
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
+        unsafe { intersect(self, scene, kind, rays, hits, filter) }
+    }
+
+    /// Occlusion, by packets.
+    pub fn occluded(self, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
+        unsafe { occluded(self, scene, rays, filter) }
+    }
+}
+
+#[target_feature(enable = "avx2,fma")]
+fn intersect(
+    kernel: Avx2,
+    scene: &Scene,
+    kind: RayKind,
+    rays: &[RayPacket],
+    hits: &mut [HitPacket],
+    filter: Option<&dyn HitFilter>,
+) {
+    stream::intersect(kernel, scene, kind, rays, hits, filter);
+}
+
+#[target_feature(enable = "avx2,fma")]
+fn occluded(kernel: Avx2, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    stream::occluded(kernel, scene, rays, filter);
 }
 
 const CACHE_LINE: usize = 64;
@@ -34,13 +79,13 @@ struct Aligned<T>(T);
 impl Kernel for Avx2 {
     #[inline(always)]
     fn boxes(self, planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
-        // SAFETY: `self` proves that the processor has AVX2.
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
         unsafe { boxes(planes, slab, tnear, tfar) }
     }
 
     #[inline(always)]
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
-        // SAFETY: `self` proves that the processor has AVX2.
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
         unsafe { triangles(corners, ids, mask, shear, range) }
     }
 
@@ -62,12 +107,26 @@ impl Kernel for Avx2 {
         query: &mut Query,
         stack: &mut [u64],
     ) -> bool {
-        // SAFETY: `self` proves that the processor has AVX2.
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
         unsafe { group::<ANY>(self, scene, level, ray, query, stack) }
+    }
+
+    #[inline(always)]
+    fn fixed<const ANY: bool>(
+        self,
+        walk: &Walk<'_, Self>,
+        tree: &FixedTree,
+        start: ChildRef,
+        ray: &LocalRay,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool {
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
+        unsafe { fixed::<ANY>(walk, tree, start, ray, query, stack) }
     }
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn group<const ANY: bool>(
     kernel: Avx2,
     scene: &Scene,
@@ -79,30 +138,43 @@ fn group<const ANY: bool>(
     traverse::group::<Avx2, ANY>(kernel, scene, level, ray, query, stack)
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
+fn fixed<const ANY: bool>(
+    walk: &Walk<'_, Avx2>,
+    tree: &FixedTree,
+    start: ChildRef,
+    ray: &LocalRay,
+    query: &mut Query,
+    stack: &mut [u64],
+) -> bool {
+    walk.tree::<_, _, ANY>(tree, start, 0.0, ray, query, stack)
+}
+
+#[target_feature(enable = "avx2,fma")]
 #[inline]
 fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
-    let distances = |plane: usize, origin: f32, scale: f32| {
+    let distances = |plane: usize, scale: f32, shift: f32| {
         let row: &[f32; WIDTH] = &planes.0[plane];
         // SAFETY: eight floats, aligned to 32 bytes as rows of `Planes` are.
         let row = unsafe { _mm256_load_ps(row.as_ptr()) };
-        _mm256_mul_ps(_mm256_sub_ps(row, _mm256_set1_ps(origin)), _mm256_set1_ps(scale))
+        _mm256_fmadd_ps(row, _mm256_set1_ps(scale), _mm256_set1_ps(shift))
     };
-    let near = |axis: usize| distances(2 * axis + slab.negative[axis], slab.near_origin[axis], slab.scale[axis]);
+    let near = |axis: usize| {
+        let plane = 2 * axis + slab.negative[axis];
+        distances(plane, slab.near_scale[axis], slab.near_shift[axis])
+    };
     let far = |axis: usize| {
-        distances(
-            2 * axis + 1 - slab.negative[axis],
-            slab.far_origin[axis],
-            slab.scale[axis],
-        )
+        let plane = 2 * axis + 1 - slab.negative[axis];
+        distances(plane, slab.far_scale[axis], slab.far_shift[axis])
     };
-    // Where an operand is NaN the result is the second; a NaN takes no box away.
-    let entry = _mm256_max_ps(near(1), _mm256_max_ps(near(0), _mm256_set1_ps(f32::NEG_INFINITY)));
-    let entry = _mm256_mul_ps(_mm256_max_ps(near(2), entry), _mm256_set1_ps(NEAR_SLACK));
-    let entry = _mm256_max_ps(entry, _mm256_set1_ps(tnear));
-    let exit = _mm256_min_ps(far(1), _mm256_min_ps(far(0), _mm256_set1_ps(f32::INFINITY)));
-    let exit = _mm256_mul_ps(_mm256_min_ps(far(2), exit), _mm256_set1_ps(FAR_SLACK));
-    let exit = _mm256_min_ps(exit, _mm256_set1_ps(tfar));
+    let entry = _mm256_max_ps(
+        _mm256_max_ps(near(0), near(1)),
+        _mm256_max_ps(near(2), _mm256_set1_ps(tnear)),
+    );
+    let exit = _mm256_min_ps(
+        _mm256_min_ps(far(0), far(1)),
+        _mm256_min_ps(far(2), _mm256_set1_ps(tfar)),
+    );
     let mut result = Aligned([0.0; WIDTH]);
     // SAFETY: eight floats, aligned to 32 bytes.
     unsafe { _mm256_store_ps(result.0.as_mut_ptr(), entry) };
@@ -115,7 +187,7 @@ fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
 /// A vector for each corner of four triangles.
 type Rows = [__m128; 3];
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 #[inline]
 fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
     let offset = |corner: usize, axis: usize| {
@@ -183,14 +255,14 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     hits
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 #[inline]
 fn size(v: __m128) -> __m128 {
     _mm_andnot_ps(_mm_set1_ps(-0.0), v)
 }
 
 /// Distances to the planes of four triangles, in double precision and then rounded.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 #[inline]
 fn plane_distances(corners: &Corners, shear: &Shear) -> __m128 {
     let corner = |corner: usize| {

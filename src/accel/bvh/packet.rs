@@ -1,0 +1,516 @@
+//! Packets: rays of like direction that go through the tree together, a lane for each.
+//!
+//! At a node, the packet is tested against one child after the other; those that any of its rays meets are visited nearest first,
+//! by these rays. Where few are left they go on alone. Triangles are tested by the same operations in the same order as by a ray
+//! alone, so that the answers are the same to the last bit.
+
+// What is on the stack below its top was written.
+#![allow(unsafe_code)]
+
+use std::mem::MaybeUninit;
+
+use super::build::MOST_LEVELS;
+use super::kernel::Kernel;
+use super::lanes::Lanes;
+use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
+use super::node::{Child, ChildRef, FixedNode, Node, WIDTH};
+use super::query::{Asked, CULL_SLACK, Candidate, Query};
+use super::ray::{FAR_SLACK, LEAST_SLOPE, LocalRay, MARGIN, NEAR_SLACK, Slab, USUAL_SIZES};
+use super::traverse::Walk;
+use super::tree::FixedTree;
+use super::triangle::Shear;
+use crate::geometry::HitPacket;
+use crate::math::Vec3;
+
+/// Entries of a stack.
+const STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
+
+/// As many rays as this, or fewer, go on alone.
+const FEW: u32 = 2;
+
+/// A row of a number for each ray.
+type Row<const N: usize> = [f32; N];
+
+/// Rays as they are given to a packet, by lane.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Rays<const N: usize> {
+    /// Origin.
+    pub origin: [Row<N>; 3],
+    /// Direction.
+    pub direction: [Row<N>; 3],
+    /// Start of the segment.
+    pub tnear: Row<N>,
+    /// End of the segment, then of the nearest hit.
+    pub tfar: Row<N>,
+    /// Time.
+    pub time: Row<N>,
+    /// Mask.
+    pub mask: [u32; N],
+    /// For a filter.
+    pub id: [u32; N],
+}
+
+/// Rays prepared for boxes and triangles, and what they have hit.
+#[repr(C, align(64))]
+pub struct Packet<'a, const N: usize> {
+    /// The rays, up to their nearest hits.
+    pub rays: Rays<N>,
+    near_scale: [Row<N>; 3],
+    near_shift: [Row<N>; 3],
+    far_scale: [Row<N>; 3],
+    far_shift: [Row<N>; 3],
+    /// Of the shear of the class at work: see [`Shear::scale`].
+    scale: [Row<N>; 3],
+    /// Of the class at work: see [`Shear::axes`].
+    axes: [usize; 3],
+    /// Of the class at work: see [`Slab::negative`].
+    negative: [usize; 3],
+    /// Nearest hits: geometries, primitives, instances.
+    pub ids: [[u32; N]; 3],
+    asked: Asked<'a>,
+}
+
+/// Something still to be visited.
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+struct Entry<const N: usize> {
+    /// Where each ray enters its box.
+    distance: Row<N>,
+    child: ChildRef,
+    /// Which rays.
+    lanes: u32,
+}
+
+impl<'a, const N: usize> Packet<'a, N> {
+    /// Prepares rays for boxes.
+    #[inline(always)]
+    pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>, asked: Asked<'a>) -> Self {
+        let mut packet = Self {
+            near_scale: [[0.0; N]; 3],
+            near_shift: [[0.0; N]; 3],
+            far_scale: [[0.0; N]; 3],
+            far_shift: [[0.0; N]; 3],
+            scale: [[0.0; N]; 3],
+            axes: [0, 1, 2],
+            negative: [0; 3],
+            ids: [[HitPacket::NONE; N]; 3],
+            rays,
+            asked,
+        };
+        let origin = packet.rays.origin.each_ref().map(|row| s.load(row));
+        let direction = packet.rays.direction.each_ref().map(|row| s.load(row));
+        let size = origin.map(|x| s.abs(x));
+        let slope = direction.map(|x| s.abs(x));
+        let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
+        let (greatest, least) = (most(size), s.mul(s.splat(LEAST_SLOPE), most(slope)));
+        for axis in 0..3 {
+            let margin = s.mul(s.splat(MARGIN), s.add(size[axis], greatest));
+            let margin = s.copysign(margin, direction[axis]);
+            let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
+            let scale = s.div(s.splat(1.0), scale);
+            let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
+            let minus = |x: S::F| s.sub(s.splat(0.0), x);
+            s.store(near, &mut packet.near_scale[axis]);
+            s.store(far, &mut packet.far_scale[axis]);
+            let shift = s.mul(minus(s.add(origin[axis], margin)), near);
+            s.store(shift, &mut packet.near_shift[axis]);
+            let shift = s.mul(minus(s.sub(origin[axis], margin)), far);
+            s.store(shift, &mut packet.far_shift[axis]);
+        }
+        packet
+    }
+
+    /// Traces the rays of `lanes` through a tree. Returns those that it leaves out, as their directions are of an unusual size.
+    #[inline(always)]
+    pub fn trace<S: Lanes<N>, K: Kernel, const ANY: bool>(
+        &mut self,
+        s: S,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        lanes: u32,
+        stack: &mut [u64],
+    ) -> u32 {
+        let classes = Classes::new(s, &self.rays);
+        let mut rest = lanes & classes.usual;
+        while rest != 0 {
+            let (mates, axes, negative) = classes.mates(rest);
+            rest &= !mates;
+            self.axes = axes;
+            self.negative = negative;
+            let direction = axes.map(|axis| s.load(&self.rays.direction[axis]));
+            s.store(s.div(direction[0], direction[2]), &mut self.scale[0]);
+            s.store(s.div(direction[1], direction[2]), &mut self.scale[1]);
+            s.store(s.div(s.splat(1.0), direction[2]), &mut self.scale[2]);
+            self.together::<S, K, ANY>(s, walk, tree, mates, stack);
+        }
+        lanes & !classes.usual
+    }
+
+    /// Traces rays of one class.
+    #[inline(always)]
+    fn together<S: Lanes<N>, K: Kernel, const ANY: bool>(
+        &mut self,
+        s: S,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        mates: u32,
+        single_stack: &mut [u64],
+    ) {
+        let mut stack = [const { MaybeUninit::<Entry<N>>::uninit() }; STACK];
+        let mut depth = 0;
+        let mut current = ChildRef::ROOT;
+        let mut lanes = mates;
+        let mut alive = mates;
+        loop {
+            if lanes.count_ones() <= FEW {
+                self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
+            } else {
+                match current.get() {
+                    Child::Node(index) => {
+                        if let Some(next) = self.node::<S, ANY>(s, &tree.nodes[index], lanes, &mut stack, &mut depth) {
+                            (current, lanes) = next;
+                            continue;
+                        }
+                    }
+                    Child::Block(index) => self.block::<S, ANY>(s, &tree.blocks[index], lanes, walk.level.instance),
+                    Child::Sphere(_) | Child::Instance(_) => {
+                        self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
+                    }
+                }
+            }
+            if ANY {
+                alive = mates & !self.hits(s);
+            }
+            // The nearest of what is left, for the rays that have not hit something before it.
+            loop {
+                if depth == 0 || alive == 0 {
+                    return;
+                }
+                depth -= 1;
+                // SAFETY: entries below `depth` were written.
+                let entry = unsafe { stack[depth].assume_init_ref() };
+                lanes = entry.lanes & alive;
+                if !ANY {
+                    lanes &= s.bits(s.le(s.load(&entry.distance), self.cull(s)));
+                }
+                if lanes != 0 {
+                    current = entry.child;
+                    break;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn cull<S: Lanes<N>>(&self, s: S) -> S::F {
+        s.mul(s.load(&self.rays.tfar), s.splat(CULL_SLACK))
+    }
+
+    /// The lanes that have hit something.
+    #[inline(always)]
+    pub fn hits<S: Lanes<N>>(&self, s: S) -> u32 {
+        !s.bits(s.none(s.load_u(&self.ids[0])))
+    }
+
+    /// Puts all children that any ray meets but one on the stack and returns that one, with its rays.
+    #[inline(always)]
+    fn node<S: Lanes<N>, const ANY: bool>(
+        &self,
+        s: S,
+        node: &FixedNode,
+        lanes: u32,
+        stack: &mut [MaybeUninit<Entry<N>>; STACK],
+        depth: &mut usize,
+    ) -> Option<(ChildRef, u32)> {
+        let planes = node.fixed_planes();
+        let mut met = [MaybeUninit::<Entry<N>>::uninit(); WIDTH];
+        let mut order = [0u64; WIDTH];
+        let mut count = 0;
+        let (tnear, tfar) = (s.load(&self.rays.tnear), self.cull(s));
+        for slot in 0..WIDTH {
+            let near = |axis: usize| {
+                let plane = s.splat(planes.0[2 * axis + self.negative[axis]][slot]);
+                s.fused(plane, s.load(&self.near_scale[axis]), s.load(&self.near_shift[axis]))
+            };
+            let far = |axis: usize| {
+                let plane = s.splat(planes.0[2 * axis + 1 - self.negative[axis]][slot]);
+                s.fused(plane, s.load(&self.far_scale[axis]), s.load(&self.far_shift[axis]))
+            };
+            let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
+            let leave = s.least(s.least(far(0), far(1)), s.least(far(2), tfar));
+            let some = s.bits(s.le(enter, leave)) & lanes;
+            let entry = met[count].write(Entry {
+                distance: [0.0; N],
+                child: node.children()[slot],
+                lanes: some,
+            });
+            s.store(enter, &mut entry.distance);
+            // By the entry of one of the rays.
+            let key = entry.distance[some.trailing_zeros() as usize % N].to_bits();
+            order[count] = u64::from(key) << 32 | count as u64;
+            count += usize::from(some != 0);
+        }
+        if count == 0 {
+            return None;
+        }
+        let order = &mut order[..count];
+        if !ANY && count > 1 {
+            sort_descending(order);
+        }
+        for &place in &order[..count - 1] {
+            stack[*depth] = met[place as usize % WIDTH];
+            *depth += 1;
+        }
+        // SAFETY: all places named in `order` were written.
+        let first = unsafe { met[order[count - 1] as usize % WIDTH].assume_init_ref() };
+        Some((first.child, first.lanes))
+    }
+
+    /// Tests the rays of `lanes` against the triangles of a block.
+    #[inline(always)]
+    fn block<S: Lanes<N>, const ANY: bool>(&mut self, s: S, block: &FixedBlock, lanes: u32, instance: u32) {
+        let ids = block.ids();
+        let corners = block.fixed_corners();
+        let mut planes = None;
+        for triangle in 0..TRIANGLES {
+            if ids.mask[triangle] == 0 {
+                continue;
+            }
+            let [x, y, z] = self.axes;
+            let offset = |corner: usize, axis: usize| {
+                let corner = s.splat(corners.0[corner][axis][triangle]);
+                s.sub(corner, s.load(&self.rays.origin[axis]))
+            };
+            let depth = [offset(0, z), offset(1, z), offset(2, z)];
+            let across = |axis: usize, scale: &Row<N>| {
+                let scale = s.load(scale);
+                let sheared = |corner: usize| s.sub(offset(corner, axis), s.mul(scale, depth[corner]));
+                [sheared(0), sheared(1), sheared(2)]
+            };
+            let ([ax, bx, cx], [ay, by, cy]) = (across(x, &self.scale[0]), across(y, &self.scale[1]));
+            let u = s.sub(s.mul(cx, by), s.mul(cy, bx));
+            let v = s.sub(s.mul(ax, cy), s.mul(ay, cx));
+            let w = s.sub(s.mul(bx, ay), s.mul(by, ax));
+            // A NaN is lost or makes neither true: the lane is not passed over here unless the other two differ in sign.
+            let (least, greatest) = (s.least(s.least(u, v), w), s.greatest(s.greatest(u, v), w));
+            let zero = s.splat(0.0);
+            let missed = s.and(s.lt(least, zero), s.lt(zero, greatest));
+            let possible = lanes & !s.bits(missed);
+            if possible == 0 {
+                continue;
+            }
+            let scale = s.load(&self.scale[2]);
+            let [az, bz, cz] = depth.map(|z| s.mul(scale, z));
+            let least = s.least(s.least(az, bz), cz);
+            let greatest = s.greatest(s.greatest(az, bz), cz);
+            let tnear = s.load(&self.rays.tnear);
+            let within = s.and(s.lt(tnear, greatest), s.le(least, s.load(&self.rays.tfar)));
+            let seen = s.meet(s.load_u(&self.rays.mask), s.splat_u(ids.mask[triangle]));
+            let possible = possible & s.bits(s.and(within, seen));
+            if possible == 0 {
+                continue;
+            }
+            // Zero, or NaN where the products overflow.
+            let sure = s.and(s.and(s.lt(zero, s.abs(u)), s.lt(zero, s.abs(v))), s.lt(zero, s.abs(w)));
+            let planes = planes.get_or_insert_with(|| s.planes(corners));
+            let distances = s.plane_distance(
+                planes,
+                triangle,
+                self.axes,
+                self.axes.map(|axis| &self.rays.origin[axis]),
+                self.axes.map(|axis| &self.rays.direction[axis]),
+            );
+            let t = s.least(s.greatest(distances, least), greatest);
+            let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
+            let exact = possible & s.bits(s.and(sure, finite));
+            let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.rays.tfar))));
+            let inexact = possible & !exact;
+            let candidate = Candidate {
+                t: 0.0,
+                geometry: ids.geometry[triangle],
+                primitive: ids.primitive[triangle],
+                instance,
+            };
+            if inexact == 0 && !self.asked.is_filtered(candidate.geometry) {
+                self.take_all(s, t, inside, &candidate);
+            } else {
+                let mut distances = [0.0; N];
+                s.store(t, &mut distances);
+                self.offer(&corners.lane(triangle), &distances, inside, inexact, candidate);
+            }
+        }
+    }
+
+    /// Takes the hits of the lanes of `inside`, which are in the range of their rays, where they precede the nearest so far.
+    #[inline(always)]
+    fn take_all<S: Lanes<N>>(&mut self, s: S, t: S::F, inside: u32, candidate: &Candidate) {
+        let tfar = s.load(&self.rays.tfar);
+        let closer = inside & s.bits(s.lt(t, tfar));
+        let mask = s.mask(closer);
+        s.store(s.blend(mask, tfar, t), &mut self.rays.tfar);
+        let ids = [candidate.geometry, candidate.primitive, candidate.instance];
+        for (row, id) in self.ids.iter_mut().zip(ids) {
+            s.store_u(s.blend_u(mask, s.load_u(row), s.splat_u(id)), row);
+        }
+        let mut ties = inside & !closer;
+        while ties != 0 {
+            let lane = ties.trailing_zeros() as usize;
+            ties &= ties - 1;
+            if ids < self.ids.map(|row| row[lane]) {
+                (0..3).for_each(|i| self.ids[i][lane] = ids[i]);
+            }
+        }
+    }
+
+    /// Offers hits one by one: those that single precision cannot decide, and those that a filter is asked about.
+    #[cold]
+    #[inline(never)]
+    fn offer(
+        &mut self,
+        corners: &[[f32; 3]; 3],
+        distances: &Row<N>,
+        inside: u32,
+        inexact: u32,
+        mut candidate: Candidate,
+    ) {
+        let mut rest = inside | inexact;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let shear = self.shear(lane);
+            candidate.t = distances[lane];
+            let mut query = self.query(lane);
+            if inexact >> lane & 1 != 0 {
+                match shear.distance(corners) {
+                    Some(t) if query.contains(t) => candidate.t = t,
+                    _ => continue,
+                }
+            }
+            if query.offer(&candidate, || shear.barycentrics(corners)) {
+                self.take(lane, &query);
+            }
+        }
+    }
+
+    fn shear(&self, lane: usize) -> Shear {
+        Shear {
+            axes: self.axes,
+            origin: self.axes.map(|axis| self.rays.origin[axis][lane]),
+            direction: self.axes.map(|axis| self.rays.direction[axis][lane]),
+            scale: self.scale.map(|row| row[lane]),
+        }
+    }
+
+    #[inline(always)]
+    fn query(&self, lane: usize) -> Query<'a> {
+        Query {
+            tnear: self.rays.tnear[lane] + 0.0,
+            tfar: self.rays.tfar[lane],
+            cull: self.rays.tfar[lane] * CULL_SLACK,
+            ids: self.ids.map(|row| row[lane]),
+            mask: self.rays.mask[lane],
+            time: self.rays.time[lane],
+            ray_id: self.rays.id[lane],
+            scale: 1.0,
+            asked: self.asked,
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, lane: usize, query: &Query) {
+        self.rays.tfar[lane] = query.tfar;
+        (0..3).for_each(|i| self.ids[i][lane] = query.ids[i]);
+    }
+
+    /// Traces rays one by one from `start` on.
+    #[inline(always)]
+    fn alone<K: Kernel, const ANY: bool>(
+        &mut self,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        start: ChildRef,
+        lanes: u32,
+        stack: &mut [u64],
+    ) {
+        let mut rest = lanes;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let origin = Vec3::from_array(self.rays.origin.map(|row| row[lane]));
+            let direction = Vec3::from_array(self.rays.direction.map(|row| row[lane]));
+            let slab = Slab {
+                near_scale: self.near_scale.map(|row| row[lane]),
+                near_shift: self.near_shift.map(|row| row[lane]),
+                far_scale: self.far_scale.map(|row| row[lane]),
+                far_shift: self.far_shift.map(|row| row[lane]),
+                negative: self.negative,
+            };
+            let ray = LocalRay {
+                origin,
+                direction,
+                slab,
+                shear: self.shear(lane),
+            };
+            let mut query = self.query(lane);
+            walk.kernel.fixed::<ANY>(walk, tree, start, &ray, &mut query, stack);
+            self.take(lane, &query);
+        }
+    }
+}
+
+/// What rays must have in common to be traced together: the signs of their directions and the axis of the greatest component.
+struct Classes {
+    negative: [u32; 3],
+    greatest: [u32; 3],
+    /// Rays whose directions are of a [usual size](USUAL_SIZES).
+    usual: u32,
+}
+
+impl Classes {
+    #[inline(always)]
+    fn new<S: Lanes<N>, const N: usize>(s: S, rays: &Rays<N>) -> Self {
+        let direction = rays.direction.each_ref().map(|row| s.load(row));
+        let [x, y, z] = direction.map(|d| s.abs(d));
+        let size = s.greatest(s.greatest(x, y), z);
+        let is_x = s.bits(s.and(s.lt(y, x), s.lt(z, x)));
+        let is_y = s.bits(s.lt(z, y)) & !is_x;
+        let least = s.splat(*USUAL_SIZES.start());
+        let greatest = s.splat(*USUAL_SIZES.end());
+        Self {
+            negative: direction.map(|d| s.signs(d)),
+            greatest: [is_x, is_y, !(is_x | is_y)],
+            usual: s.bits(s.and(s.le(least, size), s.le(size, greatest))),
+        }
+    }
+
+    /// The rays of `rest` that are of the class of its first; their axes, the greatest last, and signs.
+    #[inline(always)]
+    fn mates(&self, rest: u32) -> (u32, [usize; 3], [usize; 3]) {
+        let first = rest.trailing_zeros();
+        let mut mates = rest;
+        let negative = self.negative.map(|signs| {
+            let sign = signs >> first & 1;
+            mates &= if sign == 1 { signs } else { !signs };
+            sign as usize
+        });
+        let z = (0..2).find(|&axis| self.greatest[axis] >> first & 1 == 1).unwrap_or(2);
+        mates &= self.greatest[z];
+        let x = if z == 2 { 0 } else { z + 1 };
+        let y = if x == 2 { 0 } else { x + 1 };
+        (mates, [x, y, z], negative)
+    }
+}
+
+#[inline(always)]
+fn sort_descending(keys: &mut [u64]) {
+    for i in 1..keys.len() {
+        let key = keys[i];
+        let mut place = i;
+        while place > 0 && keys[place - 1] < key {
+            keys[place] = keys[place - 1];
+            place -= 1;
+        }
+        keys[place] = key;
+    }
+}
