@@ -6,14 +6,18 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod bins;
 mod build;
 mod collapse;
+mod interleave;
 mod kernel;
 mod lanes;
 mod leaf;
 mod node;
 mod packet;
+mod prepare;
 pub(super) mod query;
 pub(super) mod ray;
 mod stream;
@@ -58,6 +62,8 @@ pub struct Bvh {
 /// Which kernel traces.
 #[derive(Clone, Copy)]
 enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(avx512::Avx512, avx2::Avx2),
     #[cfg(target_arch = "x86_64")]
     Avx2(avx2::Avx2),
     Portable(Portable),
@@ -115,7 +121,10 @@ impl Instructions {
     fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(kernel) = avx2::Avx2::detect() {
-            return Self::Avx2(kernel);
+            return match avx512::Avx512::detect() {
+                Some(wide) => Self::Avx512(wide, kernel),
+                None => Self::Avx2(kernel),
+            };
         }
         Self::Portable(Portable)
     }
@@ -191,11 +200,17 @@ impl Accel for Bvh {
         assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) if self.scene.takes_packets() => {
-                kernel.intersect(&self.scene, kind, rays, hits, filter)
+            Instructions::Avx512(wide, _) if self.scene.takes_packets() => {
+                wide.intersect(&self.scene, kind, rays, hits, filter);
             }
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) => self.scene.intersect(kernel, rays, hits, filter),
+            Instructions::Avx2(kernel) if self.scene.takes_packets() => {
+                kernel.intersect(&self.scene, kind, rays, hits, filter);
+            }
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => {
+                self.scene.intersect(kernel, rays, hits, filter);
+            }
             Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
         }
     }
@@ -203,9 +218,11 @@ impl Accel for Bvh {
     fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(wide, _) if self.scene.takes_packets() => wide.occluded(&self.scene, rays, filter),
+            #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(kernel) if self.scene.takes_packets() => kernel.occluded(&self.scene, rays, filter),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
+            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
             Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),
         }
     }

@@ -14,57 +14,26 @@ use super::kernel::Kernel;
 use super::lanes::Lanes;
 use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
 use super::node::{Child, ChildRef, FixedNode, Node, WIDTH};
+use super::prepare::{Prepared, Rays, Row};
 use super::query::{Asked, CULL_SLACK, Candidate, Query};
-use super::ray::{FAR_SLACK, LEAST_SLOPE, LocalRay, MARGIN, NEAR_SLACK, Slab, USUAL_SIZES};
 use super::traverse::Walk;
 use super::tree::FixedTree;
-use super::triangle::Shear;
 use crate::geometry::HitPacket;
-use crate::math::Vec3;
 
 /// Entries of a stack.
 const STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
 
 /// As many rays as this, or fewer, go on alone.
-const FEW: u32 = 2;
+const FEW: u32 = 1;
 
-/// A row of a number for each ray.
-type Row<const N: usize> = [f32; N];
-
-/// Rays as they are given to a packet, by lane.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-pub struct Rays<const N: usize> {
-    /// Origin.
-    pub origin: [Row<N>; 3],
-    /// Direction.
-    pub direction: [Row<N>; 3],
-    /// Start of the segment.
-    pub tnear: Row<N>,
-    /// End of the segment, then of the nearest hit.
-    pub tfar: Row<N>,
-    /// Time.
-    pub time: Row<N>,
-    /// Mask.
-    pub mask: [u32; N],
-    /// For a filter.
-    pub id: [u32; N],
-}
-
-/// Rays prepared for boxes and triangles, and what they have hit.
+/// Rays that are traced together, and what they have hit.
 #[repr(C, align(64))]
 pub struct Packet<'a, const N: usize> {
     /// The rays, up to their nearest hits.
-    pub rays: Rays<N>,
-    near_scale: [Row<N>; 3],
-    near_shift: [Row<N>; 3],
-    far_scale: [Row<N>; 3],
-    far_shift: [Row<N>; 3],
-    /// Of the shear of the class at work: see [`Shear::scale`].
-    scale: [Row<N>; 3],
-    /// Of the class at work: see [`Shear::axes`].
+    pub prepared: Prepared<N>,
+    /// Of the class at work: see [`Shear::axes`](super::triangle::Shear::axes).
     axes: [usize; 3],
-    /// Of the class at work: see [`Slab::negative`].
+    /// Of the class at work: see [`Slab::negative`](super::ray::Slab::negative).
     negative: [usize; 3],
     /// Nearest hits: geometries, primitives, instances.
     pub ids: [[u32; N]; 3],
@@ -83,42 +52,16 @@ struct Entry<const N: usize> {
 }
 
 impl<'a, const N: usize> Packet<'a, N> {
-    /// Prepares rays for boxes.
+    /// Prepares rays.
     #[inline(always)]
     pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>, asked: Asked<'a>) -> Self {
-        let mut packet = Self {
-            near_scale: [[0.0; N]; 3],
-            near_shift: [[0.0; N]; 3],
-            far_scale: [[0.0; N]; 3],
-            far_shift: [[0.0; N]; 3],
-            scale: [[0.0; N]; 3],
+        Self {
+            prepared: Prepared::new(s, rays),
             axes: [0, 1, 2],
             negative: [0; 3],
             ids: [[HitPacket::NONE; N]; 3],
-            rays,
             asked,
-        };
-        let origin = packet.rays.origin.each_ref().map(|row| s.load(row));
-        let direction = packet.rays.direction.each_ref().map(|row| s.load(row));
-        let size = origin.map(|x| s.abs(x));
-        let slope = direction.map(|x| s.abs(x));
-        let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
-        let (greatest, least) = (most(size), s.mul(s.splat(LEAST_SLOPE), most(slope)));
-        for axis in 0..3 {
-            let margin = s.mul(s.splat(MARGIN), s.add(size[axis], greatest));
-            let margin = s.copysign(margin, direction[axis]);
-            let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
-            let scale = s.div(s.splat(1.0), scale);
-            let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
-            let minus = |x: S::F| s.sub(s.splat(0.0), x);
-            s.store(near, &mut packet.near_scale[axis]);
-            s.store(far, &mut packet.far_scale[axis]);
-            let shift = s.mul(minus(s.add(origin[axis], margin)), near);
-            s.store(shift, &mut packet.near_shift[axis]);
-            let shift = s.mul(minus(s.sub(origin[axis], margin)), far);
-            s.store(shift, &mut packet.far_shift[axis]);
         }
-        packet
     }
 
     /// Traces the rays of `lanes` through a tree. Returns those that it leaves out, as their directions are of an unusual size.
@@ -131,20 +74,25 @@ impl<'a, const N: usize> Packet<'a, N> {
         lanes: u32,
         stack: &mut [u64],
     ) -> u32 {
-        let classes = Classes::new(s, &self.rays);
-        let mut rest = lanes & classes.usual;
+        let mut rest = lanes & self.prepared.usual;
         while rest != 0 {
-            let (mates, axes, negative) = classes.mates(rest);
+            let mates = self.mates(rest);
             rest &= !mates;
-            self.axes = axes;
-            self.negative = negative;
-            let direction = axes.map(|axis| s.load(&self.rays.direction[axis]));
-            s.store(s.div(direction[0], direction[2]), &mut self.scale[0]);
-            s.store(s.div(direction[1], direction[2]), &mut self.scale[1]);
-            s.store(s.div(s.splat(1.0), direction[2]), &mut self.scale[2]);
+            let first = mates.trailing_zeros() as usize;
+            self.axes = self.prepared.axes(first);
+            self.negative = self.prepared.negative.map(|signs| (signs >> first & 1) as usize);
             self.together::<S, K, ANY>(s, walk, tree, mates, stack);
         }
-        lanes & !classes.usual
+        lanes & !self.prepared.usual
+    }
+
+    /// The rays of `rest` that have the signs of direction and the axis of its greatest component in common with the first.
+    #[inline(always)]
+    fn mates(&self, rest: u32) -> u32 {
+        let first = rest.trailing_zeros();
+        let Prepared { negative, greatest, .. } = &self.prepared;
+        let like_first = |mates: u32, bits: &u32| mates & if bits >> first & 1 == 1 { *bits } else { !bits };
+        negative.iter().chain(greatest).fold(rest, like_first)
     }
 
     /// Traces rays of one class.
@@ -204,7 +152,7 @@ impl<'a, const N: usize> Packet<'a, N> {
 
     #[inline(always)]
     fn cull<S: Lanes<N>>(&self, s: S) -> S::F {
-        s.mul(s.load(&self.rays.tfar), s.splat(CULL_SLACK))
+        s.mul(s.load(&self.prepared.rays.tfar), s.splat(CULL_SLACK))
     }
 
     /// The lanes that have hit something.
@@ -227,15 +175,23 @@ impl<'a, const N: usize> Packet<'a, N> {
         let mut met = [MaybeUninit::<Entry<N>>::uninit(); WIDTH];
         let mut order = [0u64; WIDTH];
         let mut count = 0;
-        let (tnear, tfar) = (s.load(&self.rays.tnear), self.cull(s));
+        let (tnear, tfar) = (s.load(&self.prepared.rays.tnear), self.cull(s));
         for slot in 0..WIDTH {
             let near = |axis: usize| {
                 let plane = s.splat(planes.0[2 * axis + self.negative[axis]][slot]);
-                s.fused(plane, s.load(&self.near_scale[axis]), s.load(&self.near_shift[axis]))
+                s.fused(
+                    plane,
+                    s.load(&self.prepared.near_scale[axis]),
+                    s.load(&self.prepared.near_shift[axis]),
+                )
             };
             let far = |axis: usize| {
                 let plane = s.splat(planes.0[2 * axis + 1 - self.negative[axis]][slot]);
-                s.fused(plane, s.load(&self.far_scale[axis]), s.load(&self.far_shift[axis]))
+                s.fused(
+                    plane,
+                    s.load(&self.prepared.far_scale[axis]),
+                    s.load(&self.prepared.far_shift[axis]),
+                )
             };
             let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
             let leave = s.least(s.least(far(0), far(1)), s.least(far(2), tfar));
@@ -280,7 +236,7 @@ impl<'a, const N: usize> Packet<'a, N> {
             let [x, y, z] = self.axes;
             let offset = |corner: usize, axis: usize| {
                 let corner = s.splat(corners.0[corner][axis][triangle]);
-                s.sub(corner, s.load(&self.rays.origin[axis]))
+                s.sub(corner, s.load(&self.prepared.rays.origin[axis]))
             };
             let depth = [offset(0, z), offset(1, z), offset(2, z)];
             let across = |axis: usize, scale: &Row<N>| {
@@ -288,7 +244,7 @@ impl<'a, const N: usize> Packet<'a, N> {
                 let sheared = |corner: usize| s.sub(offset(corner, axis), s.mul(scale, depth[corner]));
                 [sheared(0), sheared(1), sheared(2)]
             };
-            let ([ax, bx, cx], [ay, by, cy]) = (across(x, &self.scale[0]), across(y, &self.scale[1]));
+            let ([ax, bx, cx], [ay, by, cy]) = (across(x, &self.prepared.scale[0]), across(y, &self.prepared.scale[1]));
             let u = s.sub(s.mul(cx, by), s.mul(cy, bx));
             let v = s.sub(s.mul(ax, cy), s.mul(ay, cx));
             let w = s.sub(s.mul(bx, ay), s.mul(by, ax));
@@ -300,13 +256,13 @@ impl<'a, const N: usize> Packet<'a, N> {
             if possible == 0 {
                 continue;
             }
-            let scale = s.load(&self.scale[2]);
+            let scale = s.load(&self.prepared.scale[2]);
             let [az, bz, cz] = depth.map(|z| s.mul(scale, z));
             let least = s.least(s.least(az, bz), cz);
             let greatest = s.greatest(s.greatest(az, bz), cz);
-            let tnear = s.load(&self.rays.tnear);
-            let within = s.and(s.lt(tnear, greatest), s.le(least, s.load(&self.rays.tfar)));
-            let seen = s.meet(s.load_u(&self.rays.mask), s.splat_u(ids.mask[triangle]));
+            let tnear = s.load(&self.prepared.rays.tnear);
+            let within = s.and(s.lt(tnear, greatest), s.le(least, s.load(&self.prepared.rays.tfar)));
+            let seen = s.meet(s.load_u(&self.prepared.rays.mask), s.splat_u(ids.mask[triangle]));
             let possible = possible & s.bits(s.and(within, seen));
             if possible == 0 {
                 continue;
@@ -318,13 +274,13 @@ impl<'a, const N: usize> Packet<'a, N> {
                 planes,
                 triangle,
                 self.axes,
-                self.axes.map(|axis| &self.rays.origin[axis]),
-                self.axes.map(|axis| &self.rays.direction[axis]),
+                self.axes.map(|axis| &self.prepared.rays.origin[axis]),
+                self.axes.map(|axis| &self.prepared.rays.direction[axis]),
             );
             let t = s.least(s.greatest(distances, least), greatest);
             let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
             let exact = possible & s.bits(s.and(sure, finite));
-            let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.rays.tfar))));
+            let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.prepared.rays.tfar))));
             let inexact = possible & !exact;
             let candidate = Candidate {
                 t: 0.0,
@@ -345,10 +301,10 @@ impl<'a, const N: usize> Packet<'a, N> {
     /// Takes the hits of the lanes of `inside`, which are in the range of their rays, where they precede the nearest so far.
     #[inline(always)]
     fn take_all<S: Lanes<N>>(&mut self, s: S, t: S::F, inside: u32, candidate: &Candidate) {
-        let tfar = s.load(&self.rays.tfar);
+        let tfar = s.load(&self.prepared.rays.tfar);
         let closer = inside & s.bits(s.lt(t, tfar));
         let mask = s.mask(closer);
-        s.store(s.blend(mask, tfar, t), &mut self.rays.tfar);
+        s.store(s.blend(mask, tfar, t), &mut self.prepared.rays.tfar);
         let ids = [candidate.geometry, candidate.primitive, candidate.instance];
         for (row, id) in self.ids.iter_mut().zip(ids) {
             s.store_u(s.blend_u(mask, s.load_u(row), s.splat_u(id)), row);
@@ -378,7 +334,7 @@ impl<'a, const N: usize> Packet<'a, N> {
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            let shear = self.shear(lane);
+            let shear = self.prepared.shear(lane);
             candidate.t = distances[lane];
             let mut query = self.query(lane);
             if inexact >> lane & 1 != 0 {
@@ -393,33 +349,17 @@ impl<'a, const N: usize> Packet<'a, N> {
         }
     }
 
-    fn shear(&self, lane: usize) -> Shear {
-        Shear {
-            axes: self.axes,
-            origin: self.axes.map(|axis| self.rays.origin[axis][lane]),
-            direction: self.axes.map(|axis| self.rays.direction[axis][lane]),
-            scale: self.scale.map(|row| row[lane]),
-        }
-    }
-
     #[inline(always)]
     fn query(&self, lane: usize) -> Query<'a> {
         Query {
-            tnear: self.rays.tnear[lane] + 0.0,
-            tfar: self.rays.tfar[lane],
-            cull: self.rays.tfar[lane] * CULL_SLACK,
             ids: self.ids.map(|row| row[lane]),
-            mask: self.rays.mask[lane],
-            time: self.rays.time[lane],
-            ray_id: self.rays.id[lane],
-            scale: 1.0,
-            asked: self.asked,
+            ..self.prepared.query(lane, self.asked)
         }
     }
 
     #[inline(always)]
     fn take(&mut self, lane: usize, query: &Query) {
-        self.rays.tfar[lane] = query.tfar;
+        self.prepared.rays.tfar[lane] = query.tfar;
         (0..3).for_each(|i| self.ids[i][lane] = query.ids[i]);
     }
 
@@ -437,68 +377,11 @@ impl<'a, const N: usize> Packet<'a, N> {
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            let origin = Vec3::from_array(self.rays.origin.map(|row| row[lane]));
-            let direction = Vec3::from_array(self.rays.direction.map(|row| row[lane]));
-            let slab = Slab {
-                near_scale: self.near_scale.map(|row| row[lane]),
-                near_shift: self.near_shift.map(|row| row[lane]),
-                far_scale: self.far_scale.map(|row| row[lane]),
-                far_shift: self.far_shift.map(|row| row[lane]),
-                negative: self.negative,
-            };
-            let ray = LocalRay {
-                origin,
-                direction,
-                slab,
-                shear: self.shear(lane),
-            };
+            let ray = self.prepared.local(lane);
             let mut query = self.query(lane);
             walk.kernel.fixed::<ANY>(walk, tree, start, &ray, &mut query, stack);
             self.take(lane, &query);
         }
-    }
-}
-
-/// What rays must have in common to be traced together: the signs of their directions and the axis of the greatest component.
-struct Classes {
-    negative: [u32; 3],
-    greatest: [u32; 3],
-    /// Rays whose directions are of a [usual size](USUAL_SIZES).
-    usual: u32,
-}
-
-impl Classes {
-    #[inline(always)]
-    fn new<S: Lanes<N>, const N: usize>(s: S, rays: &Rays<N>) -> Self {
-        let direction = rays.direction.each_ref().map(|row| s.load(row));
-        let [x, y, z] = direction.map(|d| s.abs(d));
-        let size = s.greatest(s.greatest(x, y), z);
-        let is_x = s.bits(s.and(s.lt(y, x), s.lt(z, x)));
-        let is_y = s.bits(s.lt(z, y)) & !is_x;
-        let least = s.splat(*USUAL_SIZES.start());
-        let greatest = s.splat(*USUAL_SIZES.end());
-        Self {
-            negative: direction.map(|d| s.signs(d)),
-            greatest: [is_x, is_y, !(is_x | is_y)],
-            usual: s.bits(s.and(s.le(least, size), s.le(size, greatest))),
-        }
-    }
-
-    /// The rays of `rest` that are of the class of its first; their axes, the greatest last, and signs.
-    #[inline(always)]
-    fn mates(&self, rest: u32) -> (u32, [usize; 3], [usize; 3]) {
-        let first = rest.trailing_zeros();
-        let mut mates = rest;
-        let negative = self.negative.map(|signs| {
-            let sign = signs >> first & 1;
-            mates &= if sign == 1 { signs } else { !signs };
-            sign as usize
-        });
-        let z = (0..2).find(|&axis| self.greatest[axis] >> first & 1 == 1).unwrap_or(2);
-        mates &= self.greatest[z];
-        let x = if z == 2 { 0 } else { z + 1 };
-        let y = if x == 2 { 0 } else { x + 1 };
-        (mates, [x, y, z], negative)
     }
 }
 

@@ -134,8 +134,19 @@ impl<K: Kernel> Walk<'_, K> {
         }
     }
 
+    /// Fetches one child into the cache.
     #[inline(always)]
-    fn block<B: Block, const ANY: bool>(
+    pub fn fetch<N: Node, B: Block>(&self, tree: &Tree<N, B>, child: ChildRef) {
+        match child.get() {
+            Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
+            Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
+            Child::Sphere(_) | Child::Instance(_) => {}
+        }
+    }
+
+    /// Tests a ray against the triangles of a block; says whether it hits one.
+    #[inline(always)]
+    pub fn block<B: Block, const ANY: bool>(
         &self,
         block: &B,
         corners: &Corners,
@@ -205,7 +216,7 @@ impl<K: Kernel> Walk<'_, K> {
 /// Puts all children that are hit but one on the stack and returns that one: the nearest, or with `ANY` any. The entries come
 /// off the stack nearest first.
 #[inline(always)]
-fn push<const ANY: bool>(
+pub fn push<const ANY: bool>(
     hits: &BoxHits,
     children: &[ChildRef; WIDTH],
     stack: &mut [u64],

@@ -5,6 +5,7 @@
 #![allow(unsafe_code)]
 
 mod lanes;
+mod spread;
 
 use std::arch::x86_64::*;
 
@@ -63,12 +64,12 @@ fn intersect(
     hits: &mut [HitPacket],
     filter: Option<&dyn HitFilter>,
 ) {
-    stream::intersect(kernel, scene, kind, rays, hits, filter);
+    stream::intersect(kernel, kernel, scene, kind, rays, hits, filter);
 }
 
 #[target_feature(enable = "avx2,fma")]
 fn occluded(kernel: Avx2, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
-    stream::occluded(kernel, scene, rays, filter);
+    stream::occluded(kernel, kernel, scene, rays, filter);
 }
 
 const CACHE_LINE: usize = 64;
@@ -153,6 +154,20 @@ fn fixed<const ANY: bool>(
 #[target_feature(enable = "avx2,fma")]
 #[inline]
 fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
+    let (entry, hit) = slabs(planes, slab, tnear, tfar);
+    let mut result = Aligned([0.0; WIDTH]);
+    // SAFETY: eight floats, aligned to 32 bytes.
+    unsafe { _mm256_store_ps(result.0.as_mut_ptr(), entry) };
+    BoxHits {
+        mask: _mm256_movemask_ps(hit) as u32,
+        entry: result.0,
+    }
+}
+
+/// Where a ray enters eight boxes, and which of them it meets.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn slabs(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> (__m256, __m256) {
     let distances = |plane: usize, scale: f32, shift: f32| {
         let row: &[f32; WIDTH] = &planes.0[plane];
         // SAFETY: eight floats, aligned to 32 bytes as rows of `Planes` are.
@@ -175,13 +190,7 @@ fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
         _mm256_min_ps(far(0), far(1)),
         _mm256_min_ps(far(2), _mm256_set1_ps(tfar)),
     );
-    let mut result = Aligned([0.0; WIDTH]);
-    // SAFETY: eight floats, aligned to 32 bytes.
-    unsafe { _mm256_store_ps(result.0.as_mut_ptr(), entry) };
-    BoxHits {
-        mask: _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32,
-        entry: result.0,
-    }
+    (entry, _mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit))
 }
 
 /// A vector for each corner of four triangles.
