@@ -46,6 +46,23 @@ struct Scene {
     groups: Vec<GroupTrees>,
     /// Of each geometry, whether hits on it are filtered.
     filtered: Vec<bool>,
+    limits: Limits,
+}
+
+/// Nodes of the tree of the top level above which rays that were sorted do not go through it together.
+#[derive(Clone, Copy)]
+struct Limits {
+    bounces: usize,
+    /// Shadow rays have their ends in common.
+    shadows: usize,
+}
+
+impl Limits {
+    /// As measured.
+    const USUAL: Self = Self {
+        bounces: 800,
+        shadows: 3000,
+    };
 }
 
 /// An 8-wide BVH over a world: one tree over what is in world space and over the instances, one for each group.
@@ -111,9 +128,34 @@ impl Bvh {
                     .map(|g| g.opacity == Opacity::Filtered)
                     .collect(),
                 world: Arc::clone(world),
+                limits: Limits::USUAL,
             },
             instructions: Instructions::Portable(Portable),
         }
+    }
+
+    /// One for every way to trace that this processor has, with its name. All give the same answers; for tests.
+    pub fn build_variants(world: &Arc<World>, options: &BuildOptions) -> Vec<(&'static str, Self)> {
+        let mut variants = vec![("portable bvh", Self::build_portable(world, options))];
+        let mut add = |name, instructions, most| {
+            let mut bvh = Self::build_portable(world, options);
+            bvh.instructions = instructions;
+            bvh.scene.limits = Limits {
+                bounces: most,
+                shadows: most,
+            };
+            variants.push((name, bvh));
+        };
+        #[cfg(target_arch = "x86_64")]
+        if let Some(kernel) = avx2::Avx2::detect() {
+            add("avx2 bvh, together", Instructions::Avx2(kernel), usize::MAX);
+            add("avx2 bvh, in turn", Instructions::Avx2(kernel), 0);
+            if let Some(wide) = avx512::Avx512::detect() {
+                add("avx-512 bvh, together", Instructions::Avx512(wide, kernel), usize::MAX);
+                add("avx-512 bvh, in turn", Instructions::Avx512(wide, kernel), 0);
+            }
+        }
+        variants
     }
 }
 

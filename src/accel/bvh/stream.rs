@@ -29,12 +29,6 @@ const CELL_BITS: u32 = 2;
 /// Cells in all.
 const CELLS: usize = 1 << (3 * CELL_BITS);
 
-/// Trees of more nodes are too large for bounces to share their way, even after sorting (measured).
-const LARGE_FOR_BOUNCES: usize = 800;
-
-/// Likewise for shadow rays, which have their ends in common.
-const LARGE_FOR_SHADOWS: usize = 3000;
-
 /// Rays that are sorted at a time.
 const BATCH: usize = 4096;
 
@@ -290,7 +284,7 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
             };
         }
         let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > LARGE_FOR_BOUNCES {
+        if tree.nodes.len() > scene.limits.bounces {
             call.one_by_one::<false>(packets, &places[..count], &mut stack, |place, query| {
                 query.store(&mut hits[place / LANES], place % LANES);
             });
@@ -331,7 +325,7 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
     let mut places = [0; BATCH];
     for packets in packets.chunks_mut(BATCH / LANES) {
         let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > LARGE_FOR_SHADOWS {
+        if tree.nodes.len() > scene.limits.shadows {
             let mut found = [0u8; BATCH / LANES];
             call.one_by_one::<true>(packets, &places[..count], &mut stack, |place, query| {
                 found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);
