@@ -13,7 +13,7 @@ use super::build::MOST_LEVELS;
 use super::kernel::Kernel;
 use super::lanes::Lanes;
 use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
-use super::node::{Child, ChildRef, FixedNode, Node, WIDTH};
+use super::node::{Child, ChildRef, Node, WIDTH};
 use super::prepare::{Prepared, Rays, Row};
 use super::query::{Asked, CULL_SLACK, Candidate, Query};
 use super::traverse::Walk;
@@ -116,7 +116,8 @@ impl<'a, const N: usize> Packet<'a, N> {
             } else {
                 match current.get() {
                     Child::Node(index) => {
-                        if let Some(next) = self.node::<S, ANY>(s, &tree.nodes[index], lanes, &mut stack, &mut depth) {
+                        if let Some(next) = self.node::<S, K, ANY>(s, walk, tree, index, lanes, &mut stack, &mut depth)
+                        {
                             (current, lanes) = next;
                             continue;
                         }
@@ -163,14 +164,17 @@ impl<'a, const N: usize> Packet<'a, N> {
 
     /// Puts all children that any ray meets but one on the stack and returns that one, with its rays.
     #[inline(always)]
-    fn node<S: Lanes<N>, const ANY: bool>(
+    fn node<S: Lanes<N>, K: Kernel, const ANY: bool>(
         &self,
         s: S,
-        node: &FixedNode,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        index: usize,
         lanes: u32,
         stack: &mut [MaybeUninit<Entry<N>>; STACK],
         depth: &mut usize,
     ) -> Option<(ChildRef, u32)> {
+        let node = &tree.nodes[index];
         let planes = node.fixed_planes();
         let mut met = [MaybeUninit::<Entry<N>>::uninit(); WIDTH];
         let mut order = [0u64; WIDTH];
@@ -216,6 +220,8 @@ impl<'a, const N: usize> Packet<'a, N> {
         }
         for &place in &order[..count - 1] {
             stack[*depth] = met[place as usize % WIDTH];
+            // SAFETY: all places named in `order` were written.
+            walk.fetch(tree, unsafe { met[place as usize % WIDTH].assume_init_ref() }.child);
             *depth += 1;
         }
         // SAFETY: all places named in `order` were written.
