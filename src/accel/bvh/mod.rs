@@ -2,7 +2,7 @@
 //! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
 //!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
-//! triangle would be hit. Both kernels give the same bits.
+//! triangle would be hit. All kernels, and all ways through a tree, give the same bits.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;

@@ -262,14 +262,23 @@ impl<'a, const N: usize> Packet<'a, N> {
             if possible == 0 {
                 continue;
             }
+            let enter = |[a, b, c]: [S::F; 3]| s.least(s.least(a, b), c);
+            let leave = |[a, b, c]: [S::F; 3]| s.greatest(s.greatest(a, b), c);
+            let along = |axis: usize| {
+                let inverse = s.load(&self.prepared.inverse[axis]);
+                [0, 1, 2].map(|corner| s.mul(offset(corner, axis), inverse))
+            };
             let scale = s.load(&self.prepared.scale[2]);
-            let [az, bz, cz] = depth.map(|z| s.mul(scale, z));
-            let least = s.least(s.least(az, bz), cz);
-            let greatest = s.greatest(s.greatest(az, bz), cz);
+            let (along_x, along_y, along_z) = (along(x), along(y), depth.map(|z| s.mul(scale, z)));
+            let first = leave([enter(along_x), enter(along_y), enter(along_z)]);
+            let last = enter([leave(along_x), leave(along_y), leave(along_z)]);
+            // Other rays miss the box, by rounding only.
+            let boxed = s.le(first, last);
             let tnear = s.load(&self.prepared.rays.tnear);
-            let within = s.and(s.lt(tnear, greatest), s.le(least, s.load(&self.prepared.rays.tfar)));
+            let within = s.and(s.lt(tnear, last), s.le(first, s.load(&self.prepared.rays.tfar)));
+            let within = s.bits(within) | !s.bits(boxed);
             let seen = s.meet(s.load_u(&self.prepared.rays.mask), s.splat_u(ids.mask[triangle]));
-            let possible = possible & s.bits(s.and(within, seen));
+            let possible = possible & within & s.bits(seen);
             if possible == 0 {
                 continue;
             }
@@ -283,9 +292,9 @@ impl<'a, const N: usize> Packet<'a, N> {
                 self.axes.map(|axis| &self.prepared.rays.origin[axis]),
                 self.axes.map(|axis| &self.prepared.rays.direction[axis]),
             );
-            let t = s.least(s.greatest(distances, least), greatest);
+            let t = s.least(s.greatest(distances, first), last);
             let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
-            let exact = possible & s.bits(s.and(sure, finite));
+            let exact = possible & s.bits(s.and(s.and(sure, finite), boxed));
             let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.prepared.rays.tfar))));
             let inexact = possible & !exact;
             let candidate = Candidate {

@@ -61,6 +61,8 @@ pub struct Prepared<const N: usize> {
     pub far_shift: [Row<N>; 3],
     /// See [`Shear::scale`].
     pub scale: [Row<N>; 3],
+    /// See [`Shear::inverse`]; of all axes.
+    pub inverse: [Row<N>; 3],
     /// Rays whose directions are negative, by axis.
     pub negative: [u32; 3],
     /// Rays whose direction is greatest along an axis.
@@ -94,6 +96,7 @@ impl<const N: usize> Prepared<N> {
             far_scale: [[0.0; N]; 3],
             far_shift: [[0.0; N]; 3],
             scale: [[0.0; N]; 3],
+            inverse: [[0.0; N]; 3],
             negative: direction.map(|d| s.signs(d)),
             greatest: [bits[0], bits[1], !(bits[0] | bits[1])],
             usual: s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest))),
@@ -107,6 +110,7 @@ impl<const N: usize> Prepared<N> {
             let margin = s.copysign(margin, direction[axis]);
             let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
             let scale = s.div(s.splat(1.0), scale);
+            s.store(scale, &mut prepared.inverse[axis]);
             let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
             let minus = |x: S::F| s.sub(s.splat(0.0), x);
             s.store(near, &mut prepared.near_scale[axis]);
@@ -136,6 +140,7 @@ impl<const N: usize> Prepared<N> {
             origin: axes.map(|axis| self.rays.origin[axis][lane]),
             direction: axes.map(|axis| self.rays.direction[axis][lane]),
             scale: self.scale.each_ref().map(|row| row[lane]),
+            inverse: [self.inverse[axes[0]][lane], self.inverse[axes[1]][lane]],
         }
     }
 

@@ -240,13 +240,20 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     );
     let planes = plane_distances(corners, shear);
     let parallel = _mm_cmpnlt_ps(size(planes), _mm_set1_ps(f32::INFINITY));
-    let inexact = possible & _mm_movemask_ps(_mm_or_ps(unsure, parallel)) as u32;
-
-    let along = |corner: usize| _mm_mul_ps(_mm_set1_ps(shear.scale[2]), depth[corner]);
-    let (az, bz, cz) = (along(0), along(1), along(2));
-    let least = _mm_min_ps(_mm_min_ps(az, bz), cz);
-    let greatest = _mm_max_ps(_mm_max_ps(az, bz), cz);
-    let t = _mm_min_ps(_mm_max_ps(planes, least), greatest);
+    let enter = |[a, b, c]: Rows| _mm_min_ps(_mm_min_ps(a, b), c);
+    let leave = |[a, b, c]: Rows| _mm_max_ps(_mm_max_ps(a, b), c);
+    let along = |axis: usize| -> Rows {
+        let inverse = _mm_set1_ps(shear.inverse[axis]);
+        [0, 1, 2].map(|corner| _mm_mul_ps(offset(corner, axis), inverse))
+    };
+    let (x, y) = (along(0), along(1));
+    let z = depth.map(|depth| _mm_mul_ps(_mm_set1_ps(shear.scale[2]), depth));
+    let first = leave([enter(x), enter(y), enter(z)]);
+    let last = enter([leave(x), leave(y), leave(z)]);
+    let t = _mm_min_ps(_mm_max_ps(planes, first), last);
+    // The ray misses the box.
+    let beside = _mm_cmpnle_ps(first, last);
+    let inexact = possible & _mm_movemask_ps(any(unsure, parallel, beside)) as u32;
     let inside = _mm_and_ps(
         _mm_cmpgt_ps(t, _mm_set1_ps(range[0])),
         _mm_cmple_ps(t, _mm_set1_ps(range[1])),
