@@ -137,14 +137,16 @@ impl<'a, const N: usize> Packet<'a, N> {
                     return;
                 }
                 depth -= 1;
-                // SAFETY: entries below `depth` were written.
-                let entry = unsafe { stack[depth].assume_init_ref() };
-                lanes = entry.lanes & alive;
-                if !ANY {
-                    lanes &= s.bits(s.le(s.load(&entry.distance), self.cull(s)));
+                let entry = stack[depth].as_ptr();
+                // SAFETY: of entries below `depth` everything was written, but with `ANY` the distances.
+                unsafe {
+                    lanes = (*entry).lanes & alive;
+                    if !ANY {
+                        lanes &= s.bits(s.le(s.load(&(*entry).distance), self.cull(s)));
+                    }
+                    current = (*entry).child;
                 }
                 if lanes != 0 {
-                    current = entry.child;
                     break;
                 }
             }
@@ -176,7 +178,8 @@ impl<'a, const N: usize> Packet<'a, N> {
     ) -> Option<(ChildRef, u32)> {
         let node = &tree.nodes[index];
         let planes = node.fixed_planes();
-        let mut met = [MaybeUninit::<Entry<N>>::uninit(); WIDTH];
+        let mut distances = [MaybeUninit::<Row<N>>::uninit(); WIDTH];
+        let mut met = [(ChildRef::ROOT, 0); WIDTH];
         let mut order = [0u64; WIDTH];
         let mut count = 0;
         let (tnear, tfar) = (s.load(&self.prepared.rays.tnear), self.cull(s));
@@ -200,33 +203,45 @@ impl<'a, const N: usize> Packet<'a, N> {
             let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
             let leave = s.least(s.least(far(0), far(1)), s.least(far(2), tfar));
             let some = s.bits(s.le(enter, leave)) & lanes;
-            let entry = met[count].write(Entry {
-                distance: [0.0; N],
-                child: node.children()[slot],
-                lanes: some,
-            });
-            s.store(enter, &mut entry.distance);
-            // By the entry of one of the rays.
-            let key = entry.distance[some.trailing_zeros() as usize % N].to_bits();
-            order[count] = u64::from(key) << 32 | count as u64;
+            met[count] = (node.children()[slot], some);
+            if !ANY {
+                let distance = distances[count].as_mut_ptr();
+                // SAFETY: any bits are a number: a row that was not written to is written whole.
+                let distance = unsafe { &mut *distance };
+                s.store(enter, distance);
+                // By the entry of one of the rays.
+                let key = distance[some.trailing_zeros() as usize % N].to_bits();
+                order[count] = u64::from(key) << 32 | count as u64;
+            }
             count += usize::from(some != 0);
         }
         if count == 0 {
             return None;
         }
-        let order = &mut order[..count];
         if !ANY && count > 1 {
-            sort_descending(order);
+            sort_descending(&mut order[..count]);
         }
-        for &place in &order[..count - 1] {
-            stack[*depth] = met[place as usize % WIDTH];
-            // SAFETY: all places named in `order` were written.
-            walk.fetch(tree, unsafe { met[place as usize % WIDTH].assume_init_ref() }.child);
+        for i in 0..count - 1 {
+            let place = if ANY { i } else { order[i] as usize % WIDTH };
+            let (child, lanes) = met[place];
+            let entry = stack[*depth].as_mut_ptr();
+            // SAFETY: the place is one of the stack; rows up to `count` were written.
+            unsafe {
+                (*entry).child = child;
+                (*entry).lanes = lanes;
+                if !ANY {
+                    (*entry).distance = distances[place].assume_init();
+                }
+            }
+            walk.fetch(tree, child);
             *depth += 1;
         }
-        // SAFETY: all places named in `order` were written.
-        let first = unsafe { met[order[count - 1] as usize % WIDTH].assume_init_ref() };
-        Some((first.child, first.lanes))
+        let first = if ANY {
+            count - 1
+        } else {
+            order[count - 1] as usize % WIDTH
+        };
+        Some(met[first])
     }
 
     /// Tests the rays of `lanes` against the triangles of a block.
