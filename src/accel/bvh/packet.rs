@@ -184,6 +184,10 @@ impl<'a, const N: usize> Packet<'a, N> {
         let mut count = 0;
         let (tnear, tfar) = (s.load(&self.prepared.rays.tnear), self.cull(s));
         for slot in 0..WIDTH {
+            // Children come first.
+            if planes.0[0][slot] == f32::MAX {
+                break;
+            }
             let near = |axis: usize| {
                 let plane = s.splat(planes.0[2 * axis + self.negative[axis]][slot]);
                 s.fused(
