@@ -47,7 +47,7 @@ impl Avx512 {
     }
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
 fn intersect(
     s: Avx512,
     scene: &Scene,
@@ -59,7 +59,7 @@ fn intersect(
     stream::intersect(s, s.0, scene, kind, rays, hits, filter);
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
 fn occluded(s: Avx512, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
     stream::occluded(s, s.0, scene, rays, filter);
 }
@@ -204,7 +204,7 @@ impl Lanes<16> for Avx512 {
 }
 
 /// The distances of the eight lanes from `first` on, 0 or 8.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
 #[inline]
 fn half_distance(
     corner: [f64; 3],

@@ -74,9 +74,9 @@ impl Kernel for Portable {
             let near = &planes.0[2 * axis + slab.negative[axis]];
             let far = &planes.0[2 * axis + 1 - slab.negative[axis]];
             for slot in 0..WIDTH {
-                let enter = near[slot] * slab.near_scale[axis] + slab.near_shift[axis];
+                let enter = near[slot] * slab.near[axis][0] + slab.near[axis][1];
                 entry[slot] = greatest(enter, entry[slot]);
-                let leave = far[slot] * slab.far_scale[axis] + slab.far_shift[axis];
+                let leave = far[slot] * slab.far[axis][0] + slab.far[axis][1];
                 exit[slot] = least(leave, exit[slot]);
             }
         }

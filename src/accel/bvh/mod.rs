@@ -60,8 +60,8 @@ struct Limits {
 impl Limits {
     /// As measured.
     const USUAL: Self = Self {
-        bounces: 800,
-        shadows: 3000,
+        bounces: 200,
+        shadows: 1500,
     };
 }
 

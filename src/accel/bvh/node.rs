@@ -85,6 +85,12 @@ impl Planes {
         planes
     }
 
+    /// Whether a slot has no box.
+    #[inline(always)]
+    pub fn is_empty(&self, slot: usize) -> bool {
+        self.0[0][slot] == f32::MAX
+    }
+
     /// Zeros, to be written over.
     #[inline(always)]
     pub fn scratch() -> Self {

@@ -13,7 +13,7 @@ use super::build::MOST_LEVELS;
 use super::kernel::Kernel;
 use super::lanes::Lanes;
 use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
-use super::node::{Child, ChildRef, Node, WIDTH};
+use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::prepare::{Prepared, Rays, Row};
 use super::query::{Asked, CULL_SLACK, Candidate, Query};
 use super::traverse::Walk;
@@ -42,13 +42,56 @@ pub struct Packet<'a, const N: usize> {
 
 /// Something still to be visited.
 #[derive(Clone, Copy)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 struct Entry<const N: usize> {
-    /// Where each ray enters its box.
+    /// Where each ray enters its box; without meaning for occlusion, which does not ask.
     distance: Row<N>,
     child: ChildRef,
     /// Which rays.
     lanes: u32,
+}
+
+/// What is still to be visited, the nearest on top.
+struct Stack<const N: usize> {
+    entries: [MaybeUninit<Entry<N>>; STACK],
+    depth: usize,
+}
+
+impl<const N: usize> Stack<N> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            entries: [const { MaybeUninit::uninit() }; STACK],
+            depth: 0,
+        }
+    }
+
+    /// Puts something on top; without `distance`, its distances are not written.
+    #[inline(always)]
+    fn push(&mut self, child: ChildRef, lanes: u32, distance: Option<&Row<N>>) {
+        let entry = self.entries[self.depth].as_mut_ptr();
+        // SAFETY: it points to an entry of the stack, of which only fields are written.
+        unsafe {
+            (*entry).child = child;
+            (*entry).lanes = lanes;
+            if let Some(distance) = distance {
+                (*entry).distance = *distance;
+            }
+        }
+        self.depth += 1;
+    }
+
+    /// Takes the top off: the child, its rays, and, if that is why it was written, the distances.
+    #[inline(always)]
+    fn pop<const ANY: bool>(&mut self) -> Option<(ChildRef, u32, Option<&Row<N>>)> {
+        self.depth = self.depth.checked_sub(1)?;
+        let entry = self.entries[self.depth].as_ptr();
+        // SAFETY: entries below the top were written, with distances unless `ANY`.
+        unsafe {
+            let distance = if ANY { None } else { Some(&(*entry).distance) };
+            Some(((*entry).child, (*entry).lanes, distance))
+        }
+    }
 }
 
 impl<'a, const N: usize> Packet<'a, N> {
@@ -105,8 +148,7 @@ impl<'a, const N: usize> Packet<'a, N> {
         mates: u32,
         single_stack: &mut [u64],
     ) {
-        let mut stack = [const { MaybeUninit::<Entry<N>>::uninit() }; STACK];
-        let mut depth = 0;
+        let mut stack = Stack::new();
         let mut current = ChildRef::ROOT;
         let mut lanes = mates;
         let mut alive = mates;
@@ -116,8 +158,7 @@ impl<'a, const N: usize> Packet<'a, N> {
             } else {
                 match current.get() {
                     Child::Node(index) => {
-                        if let Some(next) = self.node::<S, K, ANY>(s, walk, tree, index, lanes, &mut stack, &mut depth)
-                        {
+                        if let Some(next) = self.node::<S, K, ANY>(s, walk, tree, index, lanes, &mut stack) {
                             (current, lanes) = next;
                             continue;
                         }
@@ -133,20 +174,18 @@ impl<'a, const N: usize> Packet<'a, N> {
             }
             // The nearest of what is left, for the rays that have not hit something before it.
             loop {
-                if depth == 0 || alive == 0 {
+                if alive == 0 {
                     return;
                 }
-                depth -= 1;
-                let entry = stack[depth].as_ptr();
-                // SAFETY: of entries below `depth` everything was written, but with `ANY` the distances.
-                unsafe {
-                    lanes = (*entry).lanes & alive;
-                    if !ANY {
-                        lanes &= s.bits(s.le(s.load(&(*entry).distance), self.cull(s)));
-                    }
-                    current = (*entry).child;
+                let Some((child, rays, distance)) = stack.pop::<ANY>() else {
+                    return;
+                };
+                lanes = rays & alive;
+                if let Some(distance) = distance {
+                    lanes &= s.bits(s.le(s.load(distance), self.cull(s)));
                 }
                 if lanes != 0 {
+                    current = child;
                     break;
                 }
             }
@@ -164,6 +203,24 @@ impl<'a, const N: usize> Packet<'a, N> {
         !s.bits(s.none(s.load_u(&self.ids[0])))
     }
 
+    /// Where the rays enter one of the boxes of a node, and which of `lanes` meet it.
+    #[inline(always)]
+    fn slab<S: Lanes<N>>(&self, s: S, planes: &Planes, slot: usize, lanes: u32) -> (S::F, u32) {
+        let rays = &self.prepared;
+        let near = |axis: usize| {
+            let plane = s.splat(planes.0[2 * axis + (self.negative[axis] & 1)][slot]);
+            s.fused(plane, s.load(&rays.near_scale[axis]), s.load(&rays.near_shift[axis]))
+        };
+        let far = |axis: usize| {
+            let plane = s.splat(planes.0[2 * axis + 1 - (self.negative[axis] & 1)][slot]);
+            s.fused(plane, s.load(&rays.far_scale[axis]), s.load(&rays.far_shift[axis]))
+        };
+        let tnear = s.load(&rays.rays.tnear);
+        let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
+        let leave = s.least(s.least(far(0), far(1)), s.least(far(2), self.cull(s)));
+        (enter, s.bits(s.le(enter, leave)) & lanes)
+    }
+
     /// Puts all children that any ray meets but one on the stack and returns that one, with its rays.
     #[inline(always)]
     fn node<S: Lanes<N>, K: Kernel, const ANY: bool>(
@@ -173,45 +230,24 @@ impl<'a, const N: usize> Packet<'a, N> {
         tree: &FixedTree,
         index: usize,
         lanes: u32,
-        stack: &mut [MaybeUninit<Entry<N>>; STACK],
-        depth: &mut usize,
+        stack: &mut Stack<N>,
     ) -> Option<(ChildRef, u32)> {
         let node = &tree.nodes[index];
         let planes = node.fixed_planes();
-        let mut distances = [MaybeUninit::<Row<N>>::uninit(); WIDTH];
+        let mut distances = [const { MaybeUninit::<Row<N>>::uninit() }; WIDTH];
         let mut met = [(ChildRef::ROOT, 0); WIDTH];
-        let mut order = [0u64; WIDTH];
+        let mut order: [u64; WIDTH] = std::array::from_fn(|place| place as u64);
         let mut count = 0;
-        let (tnear, tfar) = (s.load(&self.prepared.rays.tnear), self.cull(s));
         for slot in 0..WIDTH {
             // Children come first.
-            if planes.0[0][slot] == f32::MAX {
+            if planes.is_empty(slot) {
                 break;
             }
-            let near = |axis: usize| {
-                let plane = s.splat(planes.0[2 * axis + self.negative[axis]][slot]);
-                s.fused(
-                    plane,
-                    s.load(&self.prepared.near_scale[axis]),
-                    s.load(&self.prepared.near_shift[axis]),
-                )
-            };
-            let far = |axis: usize| {
-                let plane = s.splat(planes.0[2 * axis + 1 - self.negative[axis]][slot]);
-                s.fused(
-                    plane,
-                    s.load(&self.prepared.far_scale[axis]),
-                    s.load(&self.prepared.far_shift[axis]),
-                )
-            };
-            let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
-            let leave = s.least(s.least(far(0), far(1)), s.least(far(2), tfar));
-            let some = s.bits(s.le(enter, leave)) & lanes;
+            let (enter, some) = self.slab(s, planes, slot, lanes);
             met[count] = (node.children()[slot], some);
             if !ANY {
-                let distance = distances[count].as_mut_ptr();
-                // SAFETY: any bits are a number: a row that was not written to is written whole.
-                let distance = unsafe { &mut *distance };
+                // SAFETY: it is written whole before it is read, and any bits are numbers.
+                let distance = unsafe { &mut *distances[count].as_mut_ptr() };
                 s.store(enter, distance);
                 // By the entry of one of the rays.
                 let key = distance[some.trailing_zeros() as usize % N].to_bits();
@@ -219,33 +255,19 @@ impl<'a, const N: usize> Packet<'a, N> {
             }
             count += usize::from(some != 0);
         }
-        if count == 0 {
-            return None;
-        }
         if !ANY && count > 1 {
             sort_descending(&mut order[..count]);
         }
-        for i in 0..count - 1 {
-            let place = if ANY { i } else { order[i] as usize % WIDTH };
+        let (last, others) = order[..count].split_last()?;
+        for &place in others {
+            let place = place as usize % WIDTH;
             let (child, lanes) = met[place];
-            let entry = stack[*depth].as_mut_ptr();
-            // SAFETY: the place is one of the stack; rows up to `count` were written.
-            unsafe {
-                (*entry).child = child;
-                (*entry).lanes = lanes;
-                if !ANY {
-                    (*entry).distance = distances[place].assume_init();
-                }
-            }
+            // SAFETY: with no `ANY`, those of the first `count` were written.
+            let distance = (!ANY).then(|| unsafe { distances[place].assume_init_ref() });
+            stack.push(child, lanes, distance);
             walk.fetch(tree, child);
-            *depth += 1;
         }
-        let first = if ANY {
-            count - 1
-        } else {
-            order[count - 1] as usize % WIDTH
-        };
-        Some(met[first])
+        Some(met[*last as usize % WIDTH])
     }
 
     /// Tests the rays of `lanes` against the triangles of a block.

@@ -51,13 +51,13 @@ impl<const N: usize> Rays<N> {
 pub struct Prepared<const N: usize> {
     /// The rays.
     pub rays: Rays<N>,
-    /// See [`Slab`].
+    /// See [`Slab::near`].
     pub near_scale: [Row<N>; 3],
-    /// See [`Slab`].
+    /// See [`Slab::near`].
     pub near_shift: [Row<N>; 3],
-    /// See [`Slab`].
+    /// See [`Slab::far`].
     pub far_scale: [Row<N>; 3],
-    /// See [`Slab`].
+    /// See [`Slab::far`].
     pub far_shift: [Row<N>; 3],
     /// See [`Shear::scale`].
     pub scale: [Row<N>; 3],
@@ -152,10 +152,8 @@ impl<const N: usize> Prepared<N> {
             origin: Vec3::from_array(at(&self.rays.origin)),
             direction: Vec3::from_array(at(&self.rays.direction)),
             slab: Slab {
-                near_scale: at(&self.near_scale),
-                near_shift: at(&self.near_shift),
-                far_scale: at(&self.far_scale),
-                far_shift: at(&self.far_shift),
+                near: [0, 1, 2].map(|axis| [self.near_scale[axis][lane], self.near_shift[axis][lane]]),
+                far: [0, 1, 2].map(|axis| [self.far_scale[axis][lane], self.far_shift[axis][lane]]),
                 negative: self.negative.map(|signs| (signs >> lane & 1) as usize),
             },
             shear: self.shear(lane),

@@ -30,14 +30,10 @@ pub const LEAST_SLOPE: f32 = 1.0 / (1u64 << 40) as f32;
 /// the direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Slab {
-    /// Reciprocal direction for the near planes, made smaller.
-    pub near_scale: [f32; 3],
-    /// Minus the origin, moved forward, times that.
-    pub near_shift: [f32; 3],
-    /// Reciprocal direction for the far planes, made larger.
-    pub far_scale: [f32; 3],
-    /// Minus the origin, moved backward, times that.
-    pub far_shift: [f32; 3],
+    /// For near planes, by axis: the reciprocal direction, made smaller, and minus the origin, moved forward, times that.
+    pub near: [[f32; 2]; 3],
+    /// For far planes: the reciprocal direction, made larger, and minus the origin, moved backward, times that.
+    pub far: [[f32; 2]; 3],
     /// 1 where the direction is negative, so that the near plane is the upper one; else 0.
     pub negative: [usize; 3],
 }
@@ -50,19 +46,16 @@ impl Slab {
         let slope = direction.map(f32::abs);
         let least = LEAST_SLOPE * slope[0].max(slope[1]).max(slope[2]);
         let mut slab = Self {
-            near_scale: [0.0; 3],
-            near_shift: [0.0; 3],
-            far_scale: [0.0; 3],
-            far_shift: [0.0; 3],
+            near: [[0.0; 2]; 3],
+            far: [[0.0; 2]; 3],
             negative: [0; 3],
         };
         for i in 0..3 {
             let margin = (MARGIN * (size[i] + greatest)).copysign(direction[i]);
             let scale = 1.0 / slope[i].max(least).copysign(direction[i]);
-            slab.near_scale[i] = scale * NEAR_SLACK;
-            slab.far_scale[i] = scale * FAR_SLACK;
-            slab.near_shift[i] = -(origin[i] + margin) * slab.near_scale[i];
-            slab.far_shift[i] = -(origin[i] - margin) * slab.far_scale[i];
+            let (near, far) = (scale * NEAR_SLACK, scale * FAR_SLACK);
+            slab.near[i] = [near, -(origin[i] + margin) * near];
+            slab.far[i] = [far, -(origin[i] - margin) * far];
             slab.negative[i] = usize::from(direction[i].is_sign_negative());
         }
         slab

@@ -62,6 +62,16 @@ fn neighbours<const N: usize>(packets: &[RayPacket]) -> (Rays<N>, u32) {
 /// Where a ray of a call is: packet * LANES + lane.
 type Place = u16;
 
+/// The class of a direction.
+#[inline(always)]
+fn class([x, y, z]: [f32; 3]) -> usize {
+    let sign = |x: f32| x.to_bits() >> 31;
+    let size = [x.abs(), y.abs(), z.abs()];
+    let is_x = (size[0] > size[1]) & (size[0] > size[2]);
+    let axis = if is_x { 0 } else { 1 + u32::from(size[2] >= size[1]) };
+    (axis << 3 | sign(z) << 2 | sign(y) << 1 | sign(x)) as usize
+}
+
 /// Puts rays in the order of their classes, and within a class of the cells that they start in; those that take no part are left out.
 /// Returns how many there are.
 fn sort(packets: &[RayPacket], bounds: &Bounds3, places: &mut [Place; BATCH]) -> usize {
@@ -73,17 +83,12 @@ fn sort(packets: &[RayPacket], bounds: &Bounds3, places: &mut [Place; BATCH]) ->
     // Spreads the bits of a cell number two apart.
     let spread = |x: u32| (x & 1) | (x & 2) << 2;
     for (packet, classes) in packets.iter().zip(classes.chunks_exact_mut(LANES)) {
-        for lane in 0..LANES {
-            let [x, y, z] = [packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]];
-            let sign = |x: f32| x.to_bits() >> 31;
-            let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
-            let is_x = (ax > ay) & (ax > az);
-            let axis = if is_x { 0 } else { 1 + u32::from(az >= ay) };
-            let class = axis << 3 | sign(z) << 2 | sign(y) << 1 | sign(x);
+        for (lane, to) in classes.iter_mut().enumerate() {
+            let class = class([packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]]);
             let at = [packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]];
             let at = [0, 1, 2].map(|axis| spread(cell(at[axis], axis)) << axis);
-            let class = class as usize * CELLS + (at[0] | at[1] | at[2]) as usize;
-            classes[lane] = if packet.is_active(lane) { class } else { CLASSES * CELLS } as u16;
+            let class = class * CELLS + (at[0] | at[1] | at[2]) as usize;
+            *to = if packet.is_active(lane) { class } else { CLASSES * CELLS } as u16;
         }
         for &class in &*classes {
             counts[class as usize] += 1;

@@ -100,8 +100,8 @@ impl Shear {
         ]
     }
 
-    /// The same of the box grown by what rounding may move the triangle across the ray, which is less than the [`MARGIN`] by which
-    /// the boxes of nodes are grown.
+    /// The same of the box grown across the ray by what rounding may move the triangle there, which is less than the [`MARGIN`] by
+    /// which the boxes of nodes are grown. Along the ray, nothing is moved.
     #[cold]
     #[inline(never)]
     fn wide_range(&self, corners: &[[f32; 3]; 3]) -> [f32; 2] {
@@ -113,7 +113,10 @@ impl Shear {
         let inverse = [self.inverse[0], self.inverse[1], self.scale[2]].map(f64::from);
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         for axis in 0..3 {
-            let grown = share * (size[axis] + most(size) + origin[axis].abs() + most(origin.map(f64::abs)));
+            let grown = match axis {
+                2 => 0.0,
+                _ => share * (size[axis] + most(size) + origin[axis].abs() + most(origin.map(f64::abs))),
+            };
             let high = most(rows[axis]) + grown;
             let low = -most(rows[axis].map(|x| -x)) - grown;
             let [a, b] = [low, high].map(|plane| (plane - origin[axis]) * inverse[axis]);

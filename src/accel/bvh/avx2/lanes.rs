@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::Avx2;
+use super::{Avx2, Wide};
 use crate::accel::bvh::lanes::{BlockPlanes, Lanes};
 use crate::accel::bvh::leaf::{Corners, LANES as TRIANGLES};
 
@@ -152,25 +152,53 @@ impl Lanes<8> for Avx2 {
     }
 }
 
-#[target_feature(enable = "avx2,fma")]
+/// First corners and normals of the triangles of a block, with their axes in the order of `axes`.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-pub fn block_planes(corners: &Corners) -> BlockPlanes {
-    let corner = |corner: usize| {
-        // SAFETY: four floats, aligned to 16 bytes as rows of `Corners` are.
-        let row = |axis: usize| _mm256_cvtps_pd(unsafe { _mm_load_ps(corners.0[corner][axis].as_ptr()) });
-        [row(0), row(1), row(2)]
-    };
-    let minus = |a: &[__m256d; 3], b: &[__m256d; 3]| {
+pub fn planes(corners: &Corners, axes: [usize; 3]) -> (Wide, Wide) {
+    let [a, b, c] = [wide(corners, 0, axes), wide(corners, 1, axes), wide(corners, 2, axes)];
+    let (e, f) = (minus(b, a), minus(c, a));
+    let normal = [product(e, f, 1, 2), product(e, f, 2, 0), product(e, f, 0, 1)];
+    (a, normal)
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn wide(corners: &Corners, corner: usize, axes: [usize; 3]) -> Wide {
+    let rows = &corners.0[corner];
+    let [x, y, z]: [&[f32; TRIANGLES]; 3] = [&rows[axes[0]], &rows[axes[1]], &rows[axes[2]]];
+    // SAFETY: four floats each, aligned to 16 bytes as rows of `Corners` are.
+    let rows = unsafe {
         [
-            _mm256_sub_pd(a[0], b[0]),
-            _mm256_sub_pd(a[1], b[1]),
-            _mm256_sub_pd(a[2], b[2]),
+            _mm_load_ps(x.as_ptr()),
+            _mm_load_ps(y.as_ptr()),
+            _mm_load_ps(z.as_ptr()),
         ]
     };
-    let a = corner(0);
-    let (e, f) = (minus(&corner(1), &a), minus(&corner(2), &a));
-    let product = |i: usize, j: usize| _mm256_sub_pd(_mm256_mul_pd(e[i], f[j]), _mm256_mul_pd(e[j], f[i]));
-    let n = [product(1, 2), product(2, 0), product(0, 1)];
+    [
+        _mm256_cvtps_pd(rows[0]),
+        _mm256_cvtps_pd(rows[1]),
+        _mm256_cvtps_pd(rows[2]),
+    ]
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn minus([a, b, c]: Wide, [d, e, f]: Wide) -> Wide {
+    [_mm256_sub_pd(a, d), _mm256_sub_pd(b, e), _mm256_sub_pd(c, f)]
+}
+
+/// e_i f_j - e_j f_i.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn product(e: Wide, f: Wide, i: usize, j: usize) -> __m256d {
+    _mm256_sub_pd(_mm256_mul_pd(e[i], f[j]), _mm256_mul_pd(e[j], f[i]))
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn block_planes(corners: &Corners) -> BlockPlanes {
+    let (corner, normal) = planes(corners, [0, 1, 2]);
     let mut planes = BlockPlanes {
         corner: [[0.0; TRIANGLES]; 3],
         normal: [[0.0; TRIANGLES]; 3],
@@ -178,15 +206,15 @@ pub fn block_planes(corners: &Corners) -> BlockPlanes {
     for axis in 0..3 {
         // SAFETY: four doubles, aligned to 32 bytes as rows of `BlockPlanes` are.
         unsafe {
-            _mm256_store_pd(planes.corner[axis].as_mut_ptr(), a[axis]);
-            _mm256_store_pd(planes.normal[axis].as_mut_ptr(), n[axis]);
+            _mm256_store_pd(planes.corner[axis].as_mut_ptr(), corner[axis]);
+            _mm256_store_pd(planes.normal[axis].as_mut_ptr(), normal[axis]);
         }
     }
     planes
 }
 
 /// The distances of the four lanes from `first` on, 0 or 4.
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn half_distance(
     corner: [f64; 3],

@@ -30,7 +30,11 @@ pub struct Avx2(());
 impl Avx2 {
     /// If the processor has it.
     pub fn detect() -> Option<Self> {
-        (std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")).then_some(Self(()))
+        let has = std::arch::is_x86_feature_detected!("avx2")
+            && std::arch::is_x86_feature_detected!("fma")
+            && std::arch::is_x86_feature_detected!("bmi1")
+            && std::arch::is_x86_feature_detected!("popcnt");
+        has.then_some(Self(()))
     }
 }
 
@@ -55,7 +59,7 @@ impl Avx2 {
     }
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn intersect(
     kernel: Avx2,
     scene: &Scene,
@@ -67,7 +71,7 @@ fn intersect(
     stream::intersect(kernel, kernel, scene, kind, rays, hits, filter);
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn occluded(kernel: Avx2, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
     stream::occluded(kernel, kernel, scene, rays, filter);
 }
@@ -127,7 +131,7 @@ impl Kernel for Avx2 {
     }
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn group<const ANY: bool>(
     kernel: Avx2,
     scene: &Scene,
@@ -139,7 +143,7 @@ fn group<const ANY: bool>(
     traverse::group::<Avx2, ANY>(kernel, scene, level, ray, query, stack)
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn fixed<const ANY: bool>(
     walk: &Walk<'_, Avx2>,
     tree: &FixedTree,
@@ -151,7 +155,7 @@ fn fixed<const ANY: bool>(
     walk.tree::<_, _, ANY>(tree, start, 0.0, ray, query, stack)
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
     let (entry, hit) = slabs(planes, slab, tnear, tfar);
@@ -165,7 +169,7 @@ fn boxes(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> BoxHits {
 }
 
 /// Where a ray enters eight boxes, and which of them it meets.
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn slabs(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> (__m256, __m256) {
     let distances = |plane: usize, scale: f32, shift: f32| {
@@ -175,12 +179,12 @@ fn slabs(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> (__m256, __m256
         _mm256_fmadd_ps(row, _mm256_set1_ps(scale), _mm256_set1_ps(shift))
     };
     let near = |axis: usize| {
-        let plane = 2 * axis + slab.negative[axis];
-        distances(plane, slab.near_scale[axis], slab.near_shift[axis])
+        let plane = 2 * axis + (slab.negative[axis] & 1);
+        distances(plane, slab.near[axis][0], slab.near[axis][1])
     };
     let far = |axis: usize| {
-        let plane = 2 * axis + 1 - slab.negative[axis];
-        distances(plane, slab.far_scale[axis], slab.far_shift[axis])
+        let plane = 2 * axis + 1 - (slab.negative[axis] & 1);
+        distances(plane, slab.far[axis][0], slab.far[axis][1])
     };
     let entry = _mm256_max_ps(
         _mm256_max_ps(near(0), near(1)),
@@ -196,22 +200,16 @@ fn slabs(planes: &Planes, slab: &Slab, tnear: f32, tfar: f32) -> (__m256, __m256
 /// A vector for each corner of four triangles.
 type Rows = [__m128; 3];
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
-    let offset = |corner: usize, axis: usize| {
-        let row: &[f32; LANES] = &corners.0[corner][shear.axes[axis]];
-        // SAFETY: four floats, aligned to 16 bytes as rows of `Corners` are.
-        let row = unsafe { _mm_load_ps(row.as_ptr()) };
-        _mm_sub_ps(row, _mm_set1_ps(shear.origin[axis]))
-    };
-    let (scale_x, scale_y) = (_mm_set1_ps(shear.scale[0]), _mm_set1_ps(shear.scale[1]));
-    let depth: Rows = [offset(0, 2), offset(1, 2), offset(2, 2)];
-    let across = |axis: usize, scale: __m128| -> Rows {
-        let sheared = |corner: usize| _mm_sub_ps(offset(corner, axis), _mm_mul_ps(scale, depth[corner]));
-        [sheared(0), sheared(1), sheared(2)]
-    };
-    let ([ax, bx, cx], [ay, by, cy]) = (across(0, scale_x), across(1, scale_y));
+    let [x, y, depth] = [
+        offsets(corners, shear, 0),
+        offsets(corners, shear, 1),
+        offsets(corners, shear, 2),
+    ];
+    let [ax, bx, cx] = minus(x, times(depth, shear.scale[0]));
+    let [ay, by, cy] = minus(y, times(depth, shear.scale[1]));
     let u = _mm_sub_ps(_mm_mul_ps(cx, by), _mm_mul_ps(cy, bx));
     let v = _mm_sub_ps(_mm_mul_ps(ax, cy), _mm_mul_ps(ay, cx));
     let w = _mm_sub_ps(_mm_mul_ps(bx, ay), _mm_mul_ps(by, ax));
@@ -240,16 +238,11 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     );
     let planes = plane_distances(corners, shear);
     let parallel = _mm_cmpnlt_ps(size(planes), _mm_set1_ps(f32::INFINITY));
-    let enter = |[a, b, c]: Rows| _mm_min_ps(_mm_min_ps(a, b), c);
-    let leave = |[a, b, c]: Rows| _mm_max_ps(_mm_max_ps(a, b), c);
-    let along = |axis: usize| -> Rows {
-        let inverse = _mm_set1_ps(shear.inverse[axis]);
-        [0, 1, 2].map(|corner| _mm_mul_ps(offset(corner, axis), inverse))
-    };
-    let (x, y) = (along(0), along(1));
-    let z = depth.map(|depth| _mm_mul_ps(_mm_set1_ps(shear.scale[2]), depth));
-    let first = leave([enter(x), enter(y), enter(z)]);
-    let last = enter([leave(x), leave(y), leave(z)]);
+    let x = times(x, shear.inverse[0]);
+    let y = times(y, shear.inverse[1]);
+    let z = times(depth, shear.scale[2]);
+    let first = greatest([least(x), least(y), least(z)]);
+    let last = least([greatest(x), greatest(y), greatest(z)]);
     let t = _mm_min_ps(_mm_max_ps(planes, first), last);
     // The ray misses the box.
     let beside = _mm_cmpnle_ps(first, last);
@@ -271,45 +264,86 @@ fn triangles(corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range:
     hits
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn size(v: __m128) -> __m128 {
     _mm_andnot_ps(_mm_set1_ps(-0.0), v)
 }
 
-/// Distances to the planes of four triangles, in double precision and then rounded.
-#[target_feature(enable = "avx2,fma")]
+/// Coordinates of four triangles along one of the axes of a shear, relative to the origin.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn plane_distances(corners: &Corners, shear: &Shear) -> __m128 {
-    let corner = |corner: usize| {
-        let row = |axis: usize| {
-            let row: &[f32; LANES] = &corners.0[corner][shear.axes[axis]];
-            // SAFETY: four floats, aligned to 16 bytes as rows of `Corners` are.
-            _mm256_cvtps_pd(unsafe { _mm_load_ps(row.as_ptr()) })
-        };
-        [row(0), row(1), row(2)]
-    };
-    let splat = |v: &[f32; 3]| {
-        let element = |i: usize| _mm256_set1_pd(f64::from(v[i]));
-        [element(0), element(1), element(2)]
-    };
-    let minus = |a: &[__m256d; 3], b: &[__m256d; 3]| {
+fn offsets(corners: &Corners, shear: &Shear, axis: usize) -> Rows {
+    let (row, origin) = (shear.axes[axis], _mm_set1_ps(shear.origin[axis]));
+    let [a, b, c]: [&[f32; LANES]; 3] = [&corners.0[0][row], &corners.0[1][row], &corners.0[2][row]];
+    // SAFETY: four floats each, aligned to 16 bytes as rows of `Corners` are.
+    let rows = unsafe {
         [
-            _mm256_sub_pd(a[0], b[0]),
-            _mm256_sub_pd(a[1], b[1]),
-            _mm256_sub_pd(a[2], b[2]),
+            _mm_load_ps(a.as_ptr()),
+            _mm_load_ps(b.as_ptr()),
+            _mm_load_ps(c.as_ptr()),
         ]
     };
-    let a = corner(0);
-    let (e, f) = (minus(&corner(1), &a), minus(&corner(2), &a));
-    let product = |i: usize, j: usize| _mm256_sub_pd(_mm256_mul_pd(e[i], f[j]), _mm256_mul_pd(e[j], f[i]));
-    let n = [product(1, 2), product(2, 0), product(0, 1)];
-    let dot = |v: &[__m256d; 3]| {
-        let term = |i: usize| _mm256_mul_pd(n[i], v[i]);
-        _mm256_add_pd(_mm256_add_pd(term(0), term(1)), term(2))
-    };
-    let height = dot(&minus(&a, &splat(&shear.origin)));
-    _mm256_cvtpd_ps(_mm256_div_pd(height, dot(&splat(&shear.direction))))
+    [
+        _mm_sub_ps(rows[0], origin),
+        _mm_sub_ps(rows[1], origin),
+        _mm_sub_ps(rows[2], origin),
+    ]
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn times([a, b, c]: Rows, factor: f32) -> Rows {
+    let factor = _mm_set1_ps(factor);
+    [_mm_mul_ps(a, factor), _mm_mul_ps(b, factor), _mm_mul_ps(c, factor)]
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn minus([a, b, c]: Rows, [d, e, f]: Rows) -> Rows {
+    [_mm_sub_ps(a, d), _mm_sub_ps(b, e), _mm_sub_ps(c, f)]
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn least([a, b, c]: Rows) -> __m128 {
+    _mm_min_ps(_mm_min_ps(a, b), c)
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn greatest([a, b, c]: Rows) -> __m128 {
+    _mm_max_ps(_mm_max_ps(a, b), c)
+}
+
+/// Distances to the planes of four triangles, in double precision and then rounded.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn plane_distances(corners: &Corners, shear: &Shear) -> __m128 {
+    let (corner, normal) = lanes::planes(corners, shear.axes);
+    let origin = shear.origin.map(f64::from);
+    let direction = shear.direction.map(f64::from);
+    let height = [
+        _mm256_sub_pd(corner[0], _mm256_set1_pd(origin[0])),
+        _mm256_sub_pd(corner[1], _mm256_set1_pd(origin[1])),
+        _mm256_sub_pd(corner[2], _mm256_set1_pd(origin[2])),
+    ];
+    let along = [
+        _mm256_set1_pd(direction[0]),
+        _mm256_set1_pd(direction[1]),
+        _mm256_set1_pd(direction[2]),
+    ];
+    _mm256_cvtpd_ps(_mm256_div_pd(dot(normal, height), dot(normal, along)))
+}
+
+/// A vector for each axis.
+type Wide = [__m256d; 3];
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn dot([a, b, c]: Wide, [d, e, f]: Wide) -> __m256d {
+    let sum = _mm256_add_pd(_mm256_mul_pd(a, d), _mm256_mul_pd(b, e));
+    _mm256_add_pd(sum, _mm256_mul_pd(c, f))
 }
 
 /// Decides the lanes that single precision cannot.

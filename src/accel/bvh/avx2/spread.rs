@@ -43,7 +43,7 @@ impl Interleaved for Avx2 {
     }
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn spread(node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack) {
     let (entry, hit) = super::slabs(node.fixed_planes(), slab, tnear, tfar);
