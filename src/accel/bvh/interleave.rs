@@ -31,8 +31,8 @@ pub struct Stack {
 
 /// A set of instructions that can do it.
 pub trait Interleaved: Kernel {
-    /// Puts the children of a node that a ray meets on its stack, with the nearest on top.
-    fn spread(self, node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack);
+    /// Puts the children of a node that a ray meets on its stack, with the nearest on top; with `ANY`, in any order.
+    fn spread<const ANY: bool>(self, node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack);
 
     /// Fetches what is at an address into the cache, if anything is.
     fn fetch(self, place: usize);
@@ -140,7 +140,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
             let slot = &mut slots[i];
             let node = &tree.nodes[slot.current.0 as usize];
             walk.kernel
-                .spread(node, &slot.ray.slab, slot.query.tnear, slot.query.cull, &mut slot.stack);
+                .spread::<ANY>(node, &slot.ray.slab, slot.query.tnear, slot.query.cull, &mut slot.stack);
         }
         let mut rest = next[1];
         pop |= rest;

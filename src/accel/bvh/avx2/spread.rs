@@ -29,9 +29,9 @@ const fn packed() -> [[u8; WIDTH]; 256] {
 
 impl Interleaved for Avx2 {
     #[inline(always)]
-    fn spread(self, node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack) {
+    fn spread<const ANY: bool>(self, node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack) {
         // SAFETY: `self` proves that the processor has AVX2 and FMA.
-        unsafe { spread(node, slab, tnear, tfar, stack) }
+        unsafe { spread::<ANY>(node, slab, tnear, tfar, stack) }
     }
 
     #[inline(always)]
@@ -45,9 +45,21 @@ impl Interleaved for Avx2 {
 
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn spread(node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack) {
+fn spread<const ANY: bool>(node: &FixedNode, slab: &Slab, tnear: f32, tfar: f32, stack: &mut Stack) {
     let (entry, hit) = super::slabs(node.fixed_planes(), slab, tnear, tfar);
     let mask = _mm256_movemask_ps(hit) as u32;
+    if ANY {
+        // SAFETY: eight bytes of the table; and there is room for eight above what is on the stack.
+        unsafe {
+            let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(PACKED[mask as usize % 256].as_ptr().cast()));
+            let children = _mm256_loadu_si256(node.children().as_ptr().cast());
+            let to = stack.child.as_mut_ptr().add(stack.depth);
+            _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(children, order));
+        }
+        debug_assert!(stack.depth + WIDTH <= stack.child.len());
+        stack.depth += mask.count_ones() as usize;
+        return;
+    }
     // Distances with the lane in the last three bits; they are not negative, so that they compare as integers.
     let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     let keys = _mm256_andnot_si256(_mm256_set1_epi32(7), _mm256_castps_si256(entry));
