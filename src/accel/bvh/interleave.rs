@@ -13,8 +13,8 @@ use super::ray::{LocalRay, Slab};
 use super::traverse::{STACK, Walk};
 use super::tree::FixedTree;
 
-/// Rays on their way at a time.
-const SLOTS: usize = 16;
+/// Rays on their way at a time: a bit for each.
+const SLOTS: usize = 32;
 
 /// Below everything on a stack.
 const END: u32 = u32::MAX;
@@ -82,7 +82,7 @@ impl<'a> Slot<'a> {
     }
 }
 
-/// What rays do next, in sixteen bits each: those of the tags of a [`ChildRef`], the last two being one, and pop again.
+/// What rays do next, after the tags of a [`ChildRef`], the last two of which are one: pop again.
 const POP: u32 = 3;
 
 /// Traces all of `rays`, each with its place and query, and hands them back to `done`.
@@ -106,7 +106,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
     let sizes = [size_of::<FixedNode>(), size_of::<FixedBlock>(), 0, 0];
     let mut pop = ((1u64 << slots.len()) - 1) as u32;
     while pop != 0 {
-        let mut next = 0u64;
+        let mut next = [0u32; 4];
         let mut rest = pop;
         while rest != 0 {
             let i = rest.trailing_zeros() as usize;
@@ -119,18 +119,11 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
             slot.current = ChildRef(child);
             let tag = child >> 30;
             let kind = if near { tag.min(2) } else { POP };
-            next |= 1 << (16 * kind + i as u32);
+            next[kind as usize & 3] |= 1 << i;
             let tag = tag as usize;
             walk.kernel
                 .fetch(bases[tag].wrapping_add(sizes[tag] * (child & ((1 << 30) - 1)) as usize));
         }
-        let next = [
-            next as u16,
-            (next >> 16) as u16,
-            (next >> 32) as u16,
-            (next >> 48) as u16,
-        ]
-        .map(u32::from);
         pop = next[3];
         let mut rest = next[0];
         pop |= rest;
