@@ -39,6 +39,7 @@
 #![deny(unsafe_code)]
 
 pub mod accel;
+pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod desc;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::bvh::query::{Candidate, Query};
+use super::bvh::query::{Asked, Candidate, Query};
 use super::bvh::ray::{LocalRay, direction_scale};
 use super::{Accel, AccelInfo, Backend, HitFilter, RayKind};
 use crate::geometry::{GeometryId, HitPacket, InstanceId, LANES, Opacity, RayPacket, Shape, World};
@@ -30,7 +30,11 @@ impl Brute {
     fn trace<'a>(&'a self, packet: &RayPacket, lane: usize, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
         let ray = packet.get(lane);
         let scale = direction_scale(ray.direction);
-        let mut query = Query::new(&ray, scale, filter, &self.filtered);
+        let asked = Asked {
+            filter,
+            filtered: &self.filtered,
+        };
+        let mut query = Query::new(&ray, scale, asked);
         let local = LocalRay::new(ray.origin, ray.direction * scale);
         for &geometry in self.world.root() {
             self.geometry(geometry, HitPacket::NONE, &local, &mut query);

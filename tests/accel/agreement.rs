@@ -252,10 +252,7 @@ fn where_distances_are_equal_the_least_ids_are_reported() {
         let rays: Vec<Ray> = (0..count).map(|id| maker.ray(rng, id)).collect();
         let mut hits = 0;
         let options = BuildOptions::default();
-        for (name, backend) in [
-            ("avx2", Bvh::build(&world, &options)),
-            ("portable", Bvh::build_portable(&world, &options)),
-        ] {
+        for (name, backend) in Bvh::build_variants(&world, &options) {
             for (ray, answer) in rays.iter().zip(intersect(&backend, &rays, None)) {
                 if let Some((hit, _)) = answer {
                     hits += 1;

@@ -21,14 +21,16 @@ fn is_full() -> bool {
     std::env::var_os("LUCERNA_TEST_TIER").is_some_and(|tier| tier == "full")
 }
 
-/// All backends over a world, in robust mode, by name: those that can be chosen, and our BVH without vector instructions.
+/// All backends over a world, in robust mode, by name: those that can be chosen, and every way that our BVH has to trace.
 fn backends(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
     let options = BuildOptions::default();
     let mut backends: Vec<(String, Box<dyn Accel>)> = Backend::AVAILABLE
         .iter()
         .map(|&backend| (backend.to_string(), build(backend, world, &options).unwrap()))
         .collect();
-    backends.push(("portable bvh".into(), Box::new(Bvh::build_portable(world, &options))));
+    for (name, bvh) in Bvh::build_variants(world, &options) {
+        backends.push((name.into(), Box::new(bvh)));
+    }
     backends
 }
 

@@ -2,10 +2,12 @@
 
 use super::Scene;
 use super::leaf::{BlockIds, Corners, LANES};
+use super::node::ChildRef;
 use super::node::{Planes, WIDTH};
 use super::query::Query;
-use super::ray::{FAR_SLACK, LocalRay, NEAR_SLACK, Slab};
-use super::traverse::{self, Level};
+use super::ray::{LocalRay, Slab};
+use super::traverse::{self, Level, Walk};
+use super::tree::FixedTree;
 use super::triangle::{Shear, greatest, least};
 
 /// Which of eight boxes a ray meets.
@@ -46,6 +48,17 @@ pub trait Kernel: Copy + Send + Sync {
         query: &mut Query,
         stack: &mut [u64],
     ) -> bool;
+
+    /// [`Walk::tree`] compiled for this kernel, through the tree of what does not move.
+    fn fixed<const ANY: bool>(
+        self,
+        walk: &Walk<'_, Self>,
+        tree: &FixedTree,
+        start: ChildRef,
+        ray: &LocalRay,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool;
 }
 
 /// Plain Rust, for any processor.
@@ -61,16 +74,15 @@ impl Kernel for Portable {
             let near = &planes.0[2 * axis + slab.negative[axis]];
             let far = &planes.0[2 * axis + 1 - slab.negative[axis]];
             for slot in 0..WIDTH {
-                // A NaN, zero times infinity, leaves the distance so far: it takes no box away.
-                let enter = (near[slot] - slab.near_origin[axis]) * slab.scale[axis];
+                let enter = near[slot] * slab.near[axis][0] + slab.near[axis][1];
                 entry[slot] = greatest(enter, entry[slot]);
-                let leave = (far[slot] - slab.far_origin[axis]) * slab.scale[axis];
+                let leave = far[slot] * slab.far[axis][0] + slab.far[axis][1];
                 exit[slot] = least(leave, exit[slot]);
             }
         }
         for slot in 0..WIDTH {
-            entry[slot] = greatest(entry[slot] * NEAR_SLACK, tnear);
-            exit[slot] = least(exit[slot] * FAR_SLACK, tfar);
+            entry[slot] = greatest(entry[slot], tnear);
+            exit[slot] = least(exit[slot], tfar);
         }
         let hit = |mask, slot: usize| mask | u32::from(entry[slot] <= exit[slot]) << slot;
         BoxHits {
@@ -112,5 +124,17 @@ impl Kernel for Portable {
         stack: &mut [u64],
     ) -> bool {
         traverse::group::<Self, ANY>(self, scene, level, ray, query, stack)
+    }
+
+    fn fixed<const ANY: bool>(
+        self,
+        walk: &Walk<'_, Self>,
+        tree: &FixedTree,
+        start: ChildRef,
+        ray: &LocalRay,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool {
+        walk.tree::<_, _, ANY>(tree, start, 0.0, ray, query, stack)
     }
 }

@@ -109,6 +109,14 @@ pub trait Block: Send + Sync {
     fn ids(&self) -> &BlockIds;
 }
 
+impl FixedBlock {
+    /// The corners.
+    #[inline(always)]
+    pub fn fixed_corners(&self) -> &Corners {
+        &self.corners
+    }
+}
+
 impl Block for FixedBlock {
     fn new(world: &World, triangles: &[(GeometryId, PrimitiveId)], step: usize) -> Self {
         Self {

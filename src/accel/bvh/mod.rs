@@ -2,18 +2,25 @@
 //! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
 //!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
-//! triangle would be hit. Both kernels give the same bits.
+//! triangle would be hit. All kernels, and all ways through a tree, give the same bits.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod bins;
 mod build;
 mod collapse;
+mod interleave;
 mod kernel;
+mod lanes;
 mod leaf;
 mod node;
+mod packet;
+mod prepare;
 pub(super) mod query;
 pub(super) mod ray;
+mod stream;
 mod traverse;
 mod tree;
 pub(super) mod triangle;
@@ -23,7 +30,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use self::kernel::{Kernel, Portable};
-use self::query::Query;
+use self::query::{Asked, Query};
 use self::ray::{LocalRay, direction_scale};
 use self::traverse::{Level, STACK};
 use self::tree::GroupTrees;
@@ -39,6 +46,23 @@ struct Scene {
     groups: Vec<GroupTrees>,
     /// Of each geometry, whether hits on it are filtered.
     filtered: Vec<bool>,
+    limits: Limits,
+}
+
+/// Nodes of the tree of the top level above which rays that were sorted do not go through it together.
+#[derive(Clone, Copy)]
+struct Limits {
+    bounces: usize,
+    /// Shadow rays have their ends in common.
+    shadows: usize,
+}
+
+impl Limits {
+    /// As measured.
+    const USUAL: Self = Self {
+        bounces: 200,
+        shadows: 1500,
+    };
 }
 
 /// An 8-wide BVH over a world: one tree over what is in world space and over the instances, one for each group.
@@ -55,6 +79,8 @@ pub struct Bvh {
 /// Which kernel traces.
 #[derive(Clone, Copy)]
 enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(avx512::Avx512, avx2::Avx2),
     #[cfg(target_arch = "x86_64")]
     Avx2(avx2::Avx2),
     Portable(Portable),
@@ -102,9 +128,34 @@ impl Bvh {
                     .map(|g| g.opacity == Opacity::Filtered)
                     .collect(),
                 world: Arc::clone(world),
+                limits: Limits::USUAL,
             },
             instructions: Instructions::Portable(Portable),
         }
+    }
+
+    /// One for every way to trace that this processor has, with its name. All give the same answers; for tests.
+    pub fn build_variants(world: &Arc<World>, options: &BuildOptions) -> Vec<(&'static str, Self)> {
+        let mut variants = vec![("portable bvh", Self::build_portable(world, options))];
+        let mut add = |name, instructions, most| {
+            let mut bvh = Self::build_portable(world, options);
+            bvh.instructions = instructions;
+            bvh.scene.limits = Limits {
+                bounces: most,
+                shadows: most,
+            };
+            variants.push((name, bvh));
+        };
+        #[cfg(target_arch = "x86_64")]
+        if let Some(kernel) = avx2::Avx2::detect() {
+            add("avx2 bvh, together", Instructions::Avx2(kernel), usize::MAX);
+            add("avx2 bvh, in turn", Instructions::Avx2(kernel), 0);
+            if let Some(wide) = avx512::Avx512::detect() {
+                add("avx-512 bvh, together", Instructions::Avx512(wide, kernel), usize::MAX);
+                add("avx-512 bvh, in turn", Instructions::Avx512(wide, kernel), 0);
+            }
+        }
+        variants
     }
 }
 
@@ -112,7 +163,10 @@ impl Instructions {
     fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(kernel) = avx2::Avx2::detect() {
-            return Self::Avx2(kernel);
+            return match avx512::Avx512::detect() {
+                Some(wide) => Self::Avx512(wide, kernel),
+                None => Self::Avx2(kernel),
+            };
         }
         Self::Portable(Portable)
     }
@@ -134,7 +188,11 @@ impl Scene {
         }
         let ray = packet.get(lane);
         let scale = direction_scale(ray.direction);
-        let mut query = Query::new(&ray, scale, filter, &self.filtered);
+        let asked = Asked {
+            filter,
+            filtered: &self.filtered,
+        };
+        let mut query = Query::new(&ray, scale, asked);
         let local = LocalRay::new(ray.origin, ray.direction * scale);
         let level = Level {
             trees: &self.top,
@@ -180,11 +238,21 @@ impl Scene {
 }
 
 impl Accel for Bvh {
-    fn intersect(&self, _kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
+    fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) => self.scene.intersect(kernel, rays, hits, filter),
+            Instructions::Avx512(wide, _) if self.scene.takes_packets() => {
+                wide.intersect(&self.scene, kind, rays, hits, filter);
+            }
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) if self.scene.takes_packets() => {
+                kernel.intersect(&self.scene, kind, rays, hits, filter);
+            }
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => {
+                self.scene.intersect(kernel, rays, hits, filter);
+            }
             Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
         }
     }
@@ -192,7 +260,11 @@ impl Accel for Bvh {
     fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         match self.instructions {
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
+            Instructions::Avx512(wide, _) if self.scene.takes_packets() => wide.occluded(&self.scene, rays, filter),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(kernel) if self.scene.takes_packets() => kernel.occluded(&self.scene, rays, filter),
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
             Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),
         }
     }

@@ -85,6 +85,12 @@ impl Planes {
         planes
     }
 
+    /// Whether a slot has no box.
+    #[inline(always)]
+    pub fn is_empty(&self, slot: usize) -> bool {
+        self.0[0][slot] == f32::MAX
+    }
+
     /// Zeros, to be written over.
     #[inline(always)]
     pub fn scratch() -> Self {
@@ -149,6 +155,14 @@ pub trait Node: Send + Sync {
 
 fn slots<B>(children: &[(ChildRef, B)]) -> [ChildRef; WIDTH] {
     std::array::from_fn(|slot| children.get(slot).map_or(ChildRef::ROOT, |child| child.0))
+}
+
+impl FixedNode {
+    /// The boxes of the children.
+    #[inline(always)]
+    pub fn fixed_planes(&self) -> &Planes {
+        &self.planes
+    }
 }
 
 impl Node for FixedNode {

@@ -6,7 +6,7 @@ use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Spher
 
 /// A box that begins farther than the nearest hit by more than this, relatively, is passed over; one at the same distance never
 /// is, as the distances of a box and of what is in it are rounded differently and equal distances are decided by ids.
-const CULL_SLACK: f32 = 1.0 + 16.0 * f32::EPSILON;
+pub const CULL_SLACK: f32 = 1.0 + 16.0 * f32::EPSILON;
 
 /// The state of one ray's query.
 pub struct Query<'a> {
@@ -22,12 +22,29 @@ pub struct Query<'a> {
     pub mask: u32,
     /// The ray's time.
     pub time: f32,
-    ray_id: u32,
+    /// The ray's id, for the filter.
+    pub ray_id: u32,
     /// Distances are those of the ray divided by this.
-    scale: f32,
-    filter: Option<&'a dyn HitFilter>,
+    pub scale: f32,
+    /// Who else decides.
+    pub asked: Asked<'a>,
+}
+
+/// Which hits count.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    /// Asked about hits on filtered geometry.
+    pub filter: Option<&'a dyn HitFilter>,
     /// Of each geometry, whether hits on it are filtered.
-    filtered: &'a [bool],
+    pub filtered: &'a [bool],
+}
+
+impl Asked<'_> {
+    /// Whether the filter is to be asked about hits on a geometry.
+    #[inline(always)]
+    pub fn is_filtered(&self, geometry: u32) -> bool {
+        self.filter.is_some() && self.filtered[geometry as usize]
+    }
 }
 
 /// A hit to be compared with the nearest so far.
@@ -46,7 +63,7 @@ pub struct Candidate {
 impl<'a> Query<'a> {
     /// A query of `ray`, along its direction times `scale`.
     #[inline(always)]
-    pub fn new(ray: &Ray, scale: f32, filter: Option<&'a dyn HitFilter>, filtered: &'a [bool]) -> Self {
+    pub fn new(ray: &Ray, scale: f32, asked: Asked<'a>) -> Self {
         let tfar = ray.tfar / scale;
         Self {
             // Adding zero turns a negative zero into a positive one, whose bits compare as an integer.
@@ -58,8 +75,7 @@ impl<'a> Query<'a> {
             time: ray.time,
             ray_id: ray.id,
             scale,
-            filter,
-            filtered,
+            asked,
         }
     }
 
@@ -103,8 +119,8 @@ impl<'a> Query<'a> {
     /// Whether the filter, if any, accepts a candidate.
     #[inline(always)]
     fn accepts(&self, candidate: &Candidate, uv: impl FnOnce() -> [f32; 2]) -> bool {
-        match self.filter {
-            Some(filter) if self.filtered[candidate.geometry as usize] => {
+        match self.asked.filter {
+            Some(filter) if self.asked.is_filtered(candidate.geometry) => {
                 let [u, v] = uv();
                 filter.accept(&FilterHit {
                     geometry: GeometryId(candidate.geometry),

@@ -33,21 +33,16 @@ pub fn group<K: Kernel, const ANY: bool>(
     query: &mut Query,
     stack: &mut [u64],
 ) -> bool {
-    let mut walk = Walk {
-        kernel,
-        scene,
-        level,
-        ray,
-    };
+    let walk = Walk { kernel, scene, level };
     if let Some(tree) = &level.trees.fixed
-        && walk.tree::<_, _, ANY>(tree, 0.0, query, stack)
+        && walk.tree::<_, _, ANY>(tree, ChildRef::ROOT, 0.0, ray, query, stack)
     {
         return true;
     }
     for moving in &level.trees.moving {
         let (segment, fraction) = mesh(&scene.world, moving.sample).map_or((0, 0.0), |mesh| mesh.time_step(query.time));
         if let Some(tree) = moving.segments.get(segment)
-            && walk.tree::<_, _, ANY>(tree, fraction, query, stack)
+            && walk.tree::<_, _, ANY>(tree, ChildRef::ROOT, fraction, ray, query, stack)
         {
             return true;
         }
@@ -55,33 +50,39 @@ pub fn group<K: Kernel, const ANY: bool>(
     false
 }
 
-/// What stays the same while a ray goes through a group.
-struct Walk<'a, K> {
-    kernel: K,
-    scene: &'a Scene,
-    level: &'a Level<'a>,
-    ray: &'a LocalRay,
+/// What stays the same while rays go through a group.
+#[derive(Clone, Copy)]
+pub struct Walk<'a, K> {
+    /// The instructions to trace with.
+    pub kernel: K,
+    /// The world.
+    pub scene: &'a Scene,
+    /// The group.
+    pub level: &'a Level<'a>,
 }
 
 impl<K: Kernel> Walk<'_, K> {
+    /// Traces a ray through what is below `start`; with `ANY`, says whether it hits something.
     #[inline(always)]
-    fn tree<N: Node, B: Block, const ANY: bool>(
-        &mut self,
+    pub fn tree<N: Node, B: Block, const ANY: bool>(
+        &self,
         tree: &Tree<N, B>,
+        start: ChildRef,
         fraction: f32,
+        ray: &LocalRay,
         query: &mut Query,
         stack: &mut [u64],
     ) -> bool {
         let mut planes = Planes::scratch();
         let mut corners = Corners::scratch();
         let mut depth = 0;
-        let mut current = ChildRef::ROOT;
+        let mut current = start;
         loop {
             let found = match current.get() {
                 Child::Node(index) => {
                     let node = &tree.nodes[index];
                     let planes = node.planes(fraction, &mut planes);
-                    let hits = self.kernel.boxes(planes, &self.ray.slab, query.tnear, query.cull);
+                    let hits = self.kernel.boxes(planes, &ray.slab, query.tnear, query.cull);
                     if hits.mask != 0 {
                         let children = node.children();
                         self.prefetch(tree, hits.mask, children);
@@ -93,13 +94,13 @@ impl<K: Kernel> Walk<'_, K> {
                 Child::Block(index) => {
                     let block = &tree.blocks[index];
                     let corners = block.corners(fraction, &mut corners);
-                    self.block::<_, ANY>(block, corners, query)
+                    self.block::<_, ANY>(block, corners, ray, query)
                 }
                 Child::Sphere(index) => {
                     let (geometry, primitive) = tree.spheres[index];
-                    self.sphere(geometry.0, primitive.0, query)
+                    self.sphere(geometry.0, primitive.0, ray, query)
                 }
-                Child::Instance(index) => self.instance::<ANY>(index, query, &mut stack[depth..]),
+                Child::Instance(index) => self.instance::<ANY>(index, ray, query, &mut stack[depth..]),
             };
             if ANY && found {
                 return true;
@@ -133,11 +134,28 @@ impl<K: Kernel> Walk<'_, K> {
         }
     }
 
+    /// Fetches one child into the cache.
     #[inline(always)]
-    fn block<B: Block, const ANY: bool>(&self, block: &B, corners: &Corners, query: &mut Query) -> bool {
+    pub fn fetch<N: Node, B: Block>(&self, tree: &Tree<N, B>, child: ChildRef) {
+        match child.get() {
+            Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
+            Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
+            Child::Sphere(_) | Child::Instance(_) => {}
+        }
+    }
+
+    /// Tests a ray against the triangles of a block; says whether it hits one.
+    #[inline(always)]
+    pub fn block<B: Block, const ANY: bool>(
+        &self,
+        block: &B,
+        corners: &Corners,
+        ray: &LocalRay,
+        query: &mut Query,
+    ) -> bool {
         let ids = block.ids();
         let range = [query.tnear, query.tfar];
-        let hits = self.kernel.triangles(corners, ids, query.mask, &self.ray.shear, range);
+        let hits = self.kernel.triangles(corners, ids, query.mask, &ray.shear, range);
         let mut rest = hits.mask;
         let mut found = false;
         while rest != 0 {
@@ -149,7 +167,7 @@ impl<K: Kernel> Walk<'_, K> {
                 primitive: ids.primitive[lane],
                 instance: self.level.instance,
             };
-            found |= query.offer(&candidate, || corners.barycentrics(lane, self.ray));
+            found |= query.offer(&candidate, || corners.barycentrics(lane, ray));
             if ANY && found {
                 return true;
             }
@@ -158,7 +176,7 @@ impl<K: Kernel> Walk<'_, K> {
     }
 
     #[inline(never)]
-    fn sphere(&self, geometry: u32, primitive: u32, query: &mut Query) -> bool {
+    fn sphere(&self, geometry: u32, primitive: u32, ray: &LocalRay, query: &mut Query) -> bool {
         let member = &self.scene.world.geometries()[geometry as usize];
         let Shape::Spheres(spheres) = &member.shape else {
             return false;
@@ -172,19 +190,19 @@ impl<K: Kernel> Walk<'_, K> {
             primitive,
             instance: self.level.instance,
         };
-        query.offer_sphere(&spheres[primitive as usize], self.ray, candidate)
+        query.offer_sphere(&spheres[primitive as usize], ray, candidate)
     }
 
     #[inline(never)]
-    fn instance<const ANY: bool>(&self, index: usize, query: &mut Query, stack: &mut [u64]) -> bool {
+    fn instance<const ANY: bool>(&self, index: usize, ray: &LocalRay, query: &mut Query, stack: &mut [u64]) -> bool {
         let id = InstanceId::from_index(index);
         let instance = self.scene.world.instance(id);
         if instance.mask & query.mask == 0 {
             return false;
         }
         let object_from_world = instance.world_from_object.inverse_at(query.time);
-        let origin = object_from_world.transform_point3(self.ray.origin.as_dvec3());
-        let direction = object_from_world.transform_vector3(self.ray.direction.as_dvec3());
+        let origin = object_from_world.transform_point3(ray.origin.as_dvec3());
+        let direction = object_from_world.transform_vector3(ray.direction.as_dvec3());
         let ray = LocalRay::new(origin.as_vec3(), direction.as_vec3());
         let level = Level {
             trees: &self.scene.groups[instance.group.index()],
@@ -198,7 +216,7 @@ impl<K: Kernel> Walk<'_, K> {
 /// Puts all children that are hit but one on the stack and returns that one: the nearest, or with `ANY` any. The entries come
 /// off the stack nearest first.
 #[inline(always)]
-fn push<const ANY: bool>(
+pub fn push<const ANY: bool>(
     hits: &BoxHits,
     children: &[ChildRef; WIDTH],
     stack: &mut [u64],

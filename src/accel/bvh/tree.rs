@@ -11,6 +11,8 @@ use crate::math::Bounds3;
 
 /// A tree of 8-wide nodes; the root is the first.
 pub struct Tree<N, B> {
+    /// A box around all that does not move, and the middle of what does.
+    pub bounds: Bounds3,
     /// Nodes.
     pub nodes: Vec<N>,
     /// Leaves of triangles.
@@ -112,7 +114,12 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
         };
         (ChildRef::new(child), bounds)
     });
-    Some(Tree { nodes, blocks, spheres })
+    Some(Tree {
+        bounds: tree.bounds,
+        nodes,
+        blocks,
+        spheres,
+    })
 }
 
 /// One set of trees for each number of time steps.
@@ -164,6 +171,7 @@ fn moving_tree(world: &World, meshes: &[GeometryId], segment: usize, bins: usize
         (ChildRef::new(Child::Block(blocks.len() - 1)), bounds)
     });
     Some(Tree {
+        bounds: tree.bounds,
         nodes,
         blocks,
         spheres: Vec::new(),

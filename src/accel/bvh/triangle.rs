@@ -9,9 +9,12 @@
 //!
 //! The distance is not the paper's, which interpolates those of the corners and is off by their rounding: it is that to the
 //! triangle's plane, in double precision. A ray that starts beyond the plane by however little does not meet it, and slivers
-//! are met where they are.
+//! are met where they are. It is kept within the triangle's box, however the ray grazes the plane: so no box around a triangle begins
+//! behind a hit on it, and what a ray hits does not depend on the order in which boxes are visited.
 //!
 //! This is the one lane version. The kernels do the same operations in the same order and agree to the last bit.
+
+use super::ray::{LEAST_SLOPE, MARGIN};
 
 /// The part of a ray that the triangle test needs. The axes are in the order of the sheared space: z is that of the greatest
 /// direction component.
@@ -25,6 +28,8 @@ pub struct Shear {
     pub direction: [f32; 3],
     /// Direction x and y over z, and 1 over z.
     pub scale: [f32; 3],
+    /// 1 over direction x and y, of which none counts as less than [`LEAST_SLOPE`] of z.
+    pub inverse: [f32; 2],
 }
 
 impl Shear {
@@ -51,6 +56,10 @@ impl Shear {
                 direction[y] / direction[z],
                 1.0 / direction[z],
             ],
+            inverse: [x, y].map(|axis| {
+                let slope = direction[axis].abs().max(LEAST_SLOPE * direction[z].abs());
+                1.0 / slope.copysign(direction[axis])
+            }),
         }
     }
 
@@ -63,13 +72,58 @@ impl Shear {
         }
         let plane = Plane::new(corners, self.axes);
         let t = plane.distance(self);
+        let [enter, leave] = match self.range(corners, sheared.z) {
+            range if range[0] <= range[1] => range,
+            _ => self.wide_range(corners),
+        };
+        let within = |t: f32| least(greatest(t, enter), leave);
         if t.is_finite() {
-            Some(clamp(t as f32, sheared.z))
+            Some(within(t as f32))
         } else if plane.has_area() {
-            sheared.resolve().map(|hit| clamp(hit.t, sheared.z))
+            sheared.resolve().map(|hit| within(hit.t))
         } else {
             None
         }
+    }
+
+    /// Where the ray enters and leaves the box of a triangle, whose corners are at the distances `z` along it. A ray that meets the
+    /// triangle only by rounding may miss its box.
+    #[inline(always)]
+    fn range(&self, corners: &[[f32; 3]; 3], z: [f32; 3]) -> [f32; 2] {
+        let along = |i: usize| corners.map(|corner| (corner[self.axes[i]] - self.origin[i]) * self.inverse[i]);
+        let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (along(0), along(1), z);
+        let enter = |a, b, c| least(least(a, b), c);
+        let leave = |a, b, c| greatest(greatest(a, b), c);
+        [
+            leave(enter(ax, bx, cx), enter(ay, by, cy), enter(az, bz, cz)),
+            enter(leave(ax, bx, cx), leave(ay, by, cy), leave(az, bz, cz)),
+        ]
+    }
+
+    /// The same of the box grown across the ray by what rounding may move the triangle there, which is less than the [`MARGIN`] by
+    /// which the boxes of nodes are grown. Along the ray, nothing is moved.
+    #[cold]
+    #[inline(never)]
+    fn wide_range(&self, corners: &[[f32; 3]; 3]) -> [f32; 2] {
+        let share = 0.75 * f64::from(MARGIN);
+        let most = |v: [f64; 3]| v[0].max(v[1]).max(v[2]);
+        let rows = self.axes.map(|axis| corners.map(|corner| f64::from(corner[axis])));
+        let origin = self.origin.map(f64::from);
+        let size = rows.map(|row| most(row.map(f64::abs)));
+        let inverse = [self.inverse[0], self.inverse[1], self.scale[2]].map(f64::from);
+        let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in 0..3 {
+            let grown = match axis {
+                2 => 0.0,
+                _ => share * (size[axis] + most(size) + origin[axis].abs() + most(origin.map(f64::abs))),
+            };
+            let high = most(rows[axis]) + grown;
+            let low = -most(rows[axis].map(|x| -x)) - grown;
+            let [a, b] = [low, high].map(|plane| (plane - origin[axis]) * inverse[axis]);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        [enter as f32, leave as f32]
     }
 
     /// Barycentric coordinates of the second and third corner where the ray hits the triangle; zero for a miss.
@@ -151,11 +205,14 @@ impl Sheared {
 
 /// The plane of a triangle.
 struct Plane {
+    /// One of its corners.
     corner: [f64; 3],
+    /// Twice its area, across it.
     normal: [f64; 3],
 }
 
 impl Plane {
+    /// With its axes in the order of `axes`.
     #[inline(always)]
     fn new(corners: &[[f32; 3]; 3], axes: [usize; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| axes.map(|axis| f64::from(corner[axis])));
@@ -184,12 +241,6 @@ impl Plane {
     fn has_area(&self) -> bool {
         self.normal != [0.0; 3]
     }
-}
-
-/// Keeps a distance between those of the corners, however the ray grazes the plane.
-#[inline(always)]
-fn clamp(t: f32, [a, b, c]: [f32; 3]) -> f32 {
-    least(greatest(t, least(least(a, b), c)), greatest(greatest(a, b), c))
 }
 
 /// The lesser; `b` where either is NaN, as the vector instruction has it.

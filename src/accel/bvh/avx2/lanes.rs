@@ -1,0 +1,238 @@
+//! Packets of eight rays by AVX2.
+
+use std::arch::x86_64::*;
+
+use super::{Avx2, Wide};
+use crate::accel::bvh::lanes::{BlockPlanes, Lanes};
+use crate::accel::bvh::leaf::{Corners, LANES as TRIANGLES};
+
+/// Calls intrinsics that need AVX2 and FMA.
+macro_rules! with {
+    ($($body:tt)*) => {{
+        // SAFETY: `self` proves that the processor has AVX2 and FMA; what is loaded or stored is a reference to as much.
+        #[allow(unused_unsafe)]
+        unsafe { $($body)* }
+    }};
+}
+
+impl Lanes<8> for Avx2 {
+    type F = __m256;
+    type U = __m256i;
+    type M = __m256;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> __m256 {
+        with!(_mm256_set1_ps(x))
+    }
+    #[inline(always)]
+    fn load(self, x: &[f32; 8]) -> __m256 {
+        with!(_mm256_loadu_ps(x.as_ptr()))
+    }
+    #[inline(always)]
+    fn store(self, x: __m256, to: &mut [f32; 8]) {
+        with!(_mm256_storeu_ps(to.as_mut_ptr(), x));
+    }
+    #[inline(always)]
+    fn add(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_add_ps(a, b))
+    }
+    #[inline(always)]
+    fn sub(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_sub_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_div_ps(a, b))
+    }
+    #[inline(always)]
+    fn fused(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+        with!(_mm256_fmadd_ps(a, b, c))
+    }
+    #[inline(always)]
+    fn least(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_min_ps(a, b))
+    }
+    #[inline(always)]
+    fn greatest(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn abs(self, a: __m256) -> __m256 {
+        with!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
+    }
+    #[inline(always)]
+    fn copysign(self, a: __m256, b: __m256) -> __m256 {
+        with!({
+            let sign = _mm256_set1_ps(-0.0);
+            _mm256_or_ps(_mm256_andnot_ps(sign, a), _mm256_and_ps(sign, b))
+        })
+    }
+    #[inline(always)]
+    fn lt(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn le(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn and(self, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_and_ps(a, b))
+    }
+    #[inline(always)]
+    fn bits(self, m: __m256) -> u32 {
+        with!(_mm256_movemask_ps(m) as u32)
+    }
+    #[inline(always)]
+    fn signs(self, a: __m256) -> u32 {
+        self.bits(a)
+    }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> __m256 {
+        with!({
+            let lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lane);
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, lane))
+        })
+    }
+    #[inline(always)]
+    fn blend(self, m: __m256, a: __m256, b: __m256) -> __m256 {
+        with!(_mm256_blendv_ps(a, b, m))
+    }
+    #[inline(always)]
+    fn splat_u(self, x: u32) -> __m256i {
+        with!(_mm256_set1_epi32(x as i32))
+    }
+    #[inline(always)]
+    fn load_u(self, x: &[u32; 8]) -> __m256i {
+        with!(_mm256_loadu_si256(x.as_ptr().cast()))
+    }
+    #[inline(always)]
+    fn store_u(self, x: __m256i, to: &mut [u32; 8]) {
+        with!(_mm256_storeu_si256(to.as_mut_ptr().cast(), x));
+    }
+    #[inline(always)]
+    fn blend_u(self, m: __m256, a: __m256i, b: __m256i) -> __m256i {
+        with!(_mm256_blendv_epi8(a, b, _mm256_castps_si256(m)))
+    }
+    #[inline(always)]
+    fn meet(self, a: __m256i, b: __m256i) -> __m256 {
+        with!({
+            let none = _mm256_cmpeq_epi32(_mm256_and_si256(a, b), _mm256_setzero_si256());
+            _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)))
+        })
+    }
+    #[inline(always)]
+    fn none(self, a: __m256i) -> __m256 {
+        with!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(a, _mm256_set1_epi32(-1))))
+    }
+    #[inline(always)]
+    fn planes(self, corners: &Corners) -> BlockPlanes {
+        with!(block_planes(corners))
+    }
+    #[inline(always)]
+    fn plane_distance(
+        self,
+        planes: &BlockPlanes,
+        triangle: usize,
+        axes: [usize; 3],
+        origin: [&[f32; 8]; 3],
+        direction: [&[f32; 8]; 3],
+    ) -> __m256 {
+        let normal = axes.map(|axis| planes.normal[axis][triangle]);
+        let corner = axes.map(|axis| planes.corner[axis][triangle]);
+        with!(_mm256_set_m128(
+            half_distance(corner, normal, origin, direction, 4),
+            half_distance(corner, normal, origin, direction, 0)
+        ))
+    }
+}
+
+/// First corners and normals of the triangles of a block, with their axes in the order of `axes`.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+pub fn planes(corners: &Corners, axes: [usize; 3]) -> (Wide, Wide) {
+    let [a, b, c] = [wide(corners, 0, axes), wide(corners, 1, axes), wide(corners, 2, axes)];
+    let (e, f) = (minus(b, a), minus(c, a));
+    let normal = [product(e, f, 1, 2), product(e, f, 2, 0), product(e, f, 0, 1)];
+    (a, normal)
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn wide(corners: &Corners, corner: usize, axes: [usize; 3]) -> Wide {
+    let rows = &corners.0[corner];
+    let [x, y, z]: [&[f32; TRIANGLES]; 3] = [&rows[axes[0]], &rows[axes[1]], &rows[axes[2]]];
+    // SAFETY: four floats each, aligned to 16 bytes as rows of `Corners` are.
+    let rows = unsafe {
+        [
+            _mm_load_ps(x.as_ptr()),
+            _mm_load_ps(y.as_ptr()),
+            _mm_load_ps(z.as_ptr()),
+        ]
+    };
+    [
+        _mm256_cvtps_pd(rows[0]),
+        _mm256_cvtps_pd(rows[1]),
+        _mm256_cvtps_pd(rows[2]),
+    ]
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn minus([a, b, c]: Wide, [d, e, f]: Wide) -> Wide {
+    [_mm256_sub_pd(a, d), _mm256_sub_pd(b, e), _mm256_sub_pd(c, f)]
+}
+
+/// e_i f_j - e_j f_i.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn product(e: Wide, f: Wide, i: usize, j: usize) -> __m256d {
+    _mm256_sub_pd(_mm256_mul_pd(e[i], f[j]), _mm256_mul_pd(e[j], f[i]))
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn block_planes(corners: &Corners) -> BlockPlanes {
+    let (corner, normal) = planes(corners, [0, 1, 2]);
+    let mut planes = BlockPlanes {
+        corner: [[0.0; TRIANGLES]; 3],
+        normal: [[0.0; TRIANGLES]; 3],
+    };
+    for axis in 0..3 {
+        // SAFETY: four doubles, aligned to 32 bytes as rows of `BlockPlanes` are.
+        unsafe {
+            _mm256_store_pd(planes.corner[axis].as_mut_ptr(), corner[axis]);
+            _mm256_store_pd(planes.normal[axis].as_mut_ptr(), normal[axis]);
+        }
+    }
+    planes
+}
+
+/// The distances of the four lanes from `first` on, 0 or 4.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn half_distance(
+    corner: [f64; 3],
+    normal: [f64; 3],
+    origin: [&[f32; 8]; 3],
+    direction: [&[f32; 8]; 3],
+    first: usize,
+) -> __m128 {
+    let wide = |row: &[f32; 8]| {
+        // SAFETY: four floats from 0 or 4 on, of eight.
+        _mm256_cvtps_pd(unsafe { _mm_loadu_ps(row.as_ptr().add(first)) })
+    };
+    let height = |axis: usize| _mm256_sub_pd(_mm256_set1_pd(corner[axis]), wide(origin[axis]));
+    let dot = |x: __m256d, y: __m256d, z: __m256d| {
+        let term = |axis: usize, x: __m256d| _mm256_mul_pd(_mm256_set1_pd(normal[axis]), x);
+        _mm256_add_pd(_mm256_add_pd(term(0, x), term(1, y)), term(2, z))
+    };
+    let above = dot(height(0), height(1), height(2));
+    let along = dot(wide(direction[0]), wide(direction[1]), wide(direction[2]));
+    _mm256_cvtpd_ps(_mm256_div_pd(above, along))
+}

@@ -1,0 +1,228 @@
+//! Packets of sixteen rays by AVX-512.
+
+// Vector instructions are intrinsics, which are unsafe where the processor may not have them.
+#![allow(unsafe_code)]
+
+use std::arch::x86_64::*;
+
+use super::Scene;
+use super::avx2::Avx2;
+use super::lanes::{BlockPlanes, Lanes};
+use super::leaf::Corners;
+use super::stream;
+use crate::accel::{HitFilter, RayKind};
+use crate::geometry::{HitPacket, RayPacket};
+
+/// Proof that the processor has AVX-512 (F, VL, DQ and BW), AVX2 and fused multiply-add.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx512(Avx2);
+
+impl Avx512 {
+    /// If the processor has it.
+    pub fn detect() -> Option<Self> {
+        let has = std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+            && std::arch::is_x86_feature_detected!("avx512dq")
+            && std::arch::is_x86_feature_detected!("avx512bw");
+        if has { Avx2::detect().map(Self) } else { None }
+    }
+
+    /// Nearest hits, by packets.
+    pub fn intersect(
+        self,
+        scene: &Scene,
+        kind: RayKind,
+        rays: &[RayPacket],
+        hits: &mut [HitPacket],
+        filter: Option<&dyn HitFilter>,
+    ) {
+        // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
+        unsafe { intersect(self, scene, kind, rays, hits, filter) }
+    }
+
+    /// Occlusion, by packets.
+    pub fn occluded(self, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+        // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
+        unsafe { occluded(self, scene, rays, filter) }
+    }
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+fn intersect(
+    s: Avx512,
+    scene: &Scene,
+    kind: RayKind,
+    rays: &[RayPacket],
+    hits: &mut [HitPacket],
+    filter: Option<&dyn HitFilter>,
+) {
+    stream::intersect(s, s.0, scene, kind, rays, hits, filter);
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+fn occluded(s: Avx512, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    stream::occluded(s, s.0, scene, rays, filter);
+}
+
+/// Calls intrinsics that need AVX-512.
+macro_rules! with {
+    ($($body:tt)*) => {{
+        // SAFETY: `self` proves that the processor has AVX-512; what is loaded or stored is a reference to as much.
+        #[allow(unused_unsafe)]
+        unsafe { $($body)* }
+    }};
+}
+
+impl Lanes<16> for Avx512 {
+    type F = __m512;
+    type U = __m512i;
+    type M = __mmask16;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> __m512 {
+        with!(_mm512_set1_ps(x))
+    }
+    #[inline(always)]
+    fn load(self, x: &[f32; 16]) -> __m512 {
+        with!(_mm512_loadu_ps(x.as_ptr()))
+    }
+    #[inline(always)]
+    fn store(self, x: __m512, to: &mut [f32; 16]) {
+        with!(_mm512_storeu_ps(to.as_mut_ptr(), x));
+    }
+    #[inline(always)]
+    fn add(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_add_ps(a, b))
+    }
+    #[inline(always)]
+    fn sub(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_sub_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn div(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_div_ps(a, b))
+    }
+    #[inline(always)]
+    fn fused(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        with!(_mm512_fmadd_ps(a, b, c))
+    }
+    #[inline(always)]
+    fn least(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_min_ps(a, b))
+    }
+    #[inline(always)]
+    fn greatest(self, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn abs(self, a: __m512) -> __m512 {
+        with!(_mm512_abs_ps(a))
+    }
+    #[inline(always)]
+    fn copysign(self, a: __m512, b: __m512) -> __m512 {
+        with!({
+            let sign = _mm512_set1_ps(-0.0);
+            _mm512_or_ps(_mm512_andnot_ps(sign, a), _mm512_and_ps(sign, b))
+        })
+    }
+    #[inline(always)]
+    fn lt(self, a: __m512, b: __m512) -> __mmask16 {
+        with!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn le(self, a: __m512, b: __m512) -> __mmask16 {
+        with!(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn and(self, a: __mmask16, b: __mmask16) -> __mmask16 {
+        a & b
+    }
+    #[inline(always)]
+    fn bits(self, m: __mmask16) -> u32 {
+        u32::from(m)
+    }
+    #[inline(always)]
+    fn signs(self, a: __m512) -> u32 {
+        with!(u32::from(_mm512_movepi32_mask(_mm512_castps_si512(a))))
+    }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> __mmask16 {
+        bits as __mmask16
+    }
+    #[inline(always)]
+    fn blend(self, m: __mmask16, a: __m512, b: __m512) -> __m512 {
+        with!(_mm512_mask_blend_ps(m, a, b))
+    }
+    #[inline(always)]
+    fn splat_u(self, x: u32) -> __m512i {
+        with!(_mm512_set1_epi32(x as i32))
+    }
+    #[inline(always)]
+    fn load_u(self, x: &[u32; 16]) -> __m512i {
+        with!(_mm512_loadu_si512(x.as_ptr().cast()))
+    }
+    #[inline(always)]
+    fn store_u(self, x: __m512i, to: &mut [u32; 16]) {
+        with!(_mm512_storeu_si512(to.as_mut_ptr().cast(), x));
+    }
+    #[inline(always)]
+    fn blend_u(self, m: __mmask16, a: __m512i, b: __m512i) -> __m512i {
+        with!(_mm512_mask_blend_epi32(m, a, b))
+    }
+    #[inline(always)]
+    fn meet(self, a: __m512i, b: __m512i) -> __mmask16 {
+        with!(_mm512_test_epi32_mask(a, b))
+    }
+    #[inline(always)]
+    fn none(self, a: __m512i) -> __mmask16 {
+        with!(_mm512_cmpeq_epi32_mask(a, _mm512_set1_epi32(-1)))
+    }
+    #[inline(always)]
+    fn planes(self, corners: &Corners) -> BlockPlanes {
+        Lanes::<8>::planes(self.0, corners)
+    }
+    #[inline(always)]
+    fn plane_distance(
+        self,
+        planes: &BlockPlanes,
+        triangle: usize,
+        axes: [usize; 3],
+        origin: [&[f32; 16]; 3],
+        direction: [&[f32; 16]; 3],
+    ) -> __m512 {
+        let normal = axes.map(|axis| planes.normal[axis][triangle]);
+        let corner = axes.map(|axis| planes.corner[axis][triangle]);
+        with!({
+            let low = _mm512_castps256_ps512(half_distance(corner, normal, origin, direction, 0));
+            _mm512_insertf32x8::<1>(low, half_distance(corner, normal, origin, direction, 8))
+        })
+    }
+}
+
+/// The distances of the eight lanes from `first` on, 0 or 8.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+#[inline]
+fn half_distance(
+    corner: [f64; 3],
+    normal: [f64; 3],
+    origin: [&[f32; 16]; 3],
+    direction: [&[f32; 16]; 3],
+    first: usize,
+) -> __m256 {
+    let wide = |row: &[f32; 16]| {
+        // SAFETY: eight floats from 0 or 8 on, of sixteen.
+        _mm512_cvtps_pd(unsafe { _mm256_loadu_ps(row.as_ptr().add(first)) })
+    };
+    let height = |axis: usize| _mm512_sub_pd(_mm512_set1_pd(corner[axis]), wide(origin[axis]));
+    let dot = |x: __m512d, y: __m512d, z: __m512d| {
+        let term = |axis: usize, x: __m512d| _mm512_mul_pd(_mm512_set1_pd(normal[axis]), x);
+        _mm512_add_pd(_mm512_add_pd(term(0, x), term(1, y)), term(2, z))
+    };
+    let above = dot(height(0), height(1), height(2));
+    let along = dot(wide(direction[0]), wide(direction[1]), wide(direction[2]));
+    _mm512_cvtpd_ps(_mm512_div_pd(above, along))
+}

@@ -1,0 +1,73 @@
+//! Vectors of a number for each ray of a packet.
+
+use super::leaf::{Corners, LANES as TRIANGLES};
+
+/// Instructions on `N` lanes. Single operations round as scalars do, and none but [`Lanes::fused`] is fused.
+///
+/// A comparison with NaN is false; of `least` and `greatest` the result is the second operand where either is NaN.
+pub trait Lanes<const N: usize>: Copy + Send + Sync {
+    /// A number for each lane.
+    type F: Copy;
+    /// An integer for each lane.
+    type U: Copy;
+    /// A truth value for each lane.
+    type M: Copy;
+
+    fn splat(self, x: f32) -> Self::F;
+    fn load(self, x: &[f32; N]) -> Self::F;
+    fn store(self, x: Self::F, to: &mut [f32; N]);
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    /// a b + c, rounded once.
+    fn fused(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    fn least(self, a: Self::F, b: Self::F) -> Self::F;
+    fn greatest(self, a: Self::F, b: Self::F) -> Self::F;
+    fn abs(self, a: Self::F) -> Self::F;
+    /// The size of `a` with the sign of `b`.
+    fn copysign(self, a: Self::F, b: Self::F) -> Self::F;
+    /// a < b.
+    fn lt(self, a: Self::F, b: Self::F) -> Self::M;
+    /// a <= b.
+    fn le(self, a: Self::F, b: Self::F) -> Self::M;
+    fn and(self, a: Self::M, b: Self::M) -> Self::M;
+    /// A bit for each lane, the first the least.
+    fn bits(self, m: Self::M) -> u32;
+    /// The sign bit of each lane.
+    fn signs(self, a: Self::F) -> u32;
+    /// The lanes whose bits are set.
+    fn mask(self, bits: u32) -> Self::M;
+    /// `b` where `m`, else `a`.
+    fn blend(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
+    fn splat_u(self, x: u32) -> Self::U;
+    fn load_u(self, x: &[u32; N]) -> Self::U;
+    fn store_u(self, x: Self::U, to: &mut [u32; N]);
+    fn blend_u(self, m: Self::M, a: Self::U, b: Self::U) -> Self::U;
+    /// Whether a and b have a bit in common.
+    fn meet(self, a: Self::U, b: Self::U) -> Self::M;
+    /// Whether all bits are set.
+    fn none(self, a: Self::U) -> Self::M;
+    /// The planes of the triangles of a block.
+    fn planes(self, corners: &Corners) -> BlockPlanes;
+    /// The distances of the plane of one triangle, by the operations of [`Plane::distance`](super::triangle::Plane::distance),
+    /// rounded to single precision at the end. Origin and direction have their axes in the order of `axes`.
+    fn plane_distance(
+        self,
+        planes: &BlockPlanes,
+        triangle: usize,
+        axes: [usize; 3],
+        origin: [&[f32; N]; 3],
+        direction: [&[f32; N]; 3],
+    ) -> Self::F;
+}
+
+/// The planes of four triangles: first corners and normals, by axis and triangle.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct BlockPlanes {
+    /// See [`Plane::corner`](super::triangle::Plane::corner).
+    pub corner: [[f64; TRIANGLES]; 3],
+    /// See [`Plane::normal`](super::triangle::Plane::normal). Its terms are the same for any cyclic order of axes.
+    pub normal: [[f64; TRIANGLES]; 3],
+}

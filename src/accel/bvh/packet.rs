@@ -1,0 +1,455 @@
+//! Packets: rays of like direction that go through the tree together, a lane for each.
+//!
+//! At a node, the packet is tested against one child after the other; those that any of its rays meets are visited nearest first,
+//! by these rays. Where few are left they go on alone. Triangles are tested by the same operations in the same order as by a ray
+//! alone, so that the answers are the same to the last bit.
+
+// What is on the stack below its top was written.
+#![allow(unsafe_code)]
+
+use std::mem::MaybeUninit;
+
+use super::build::MOST_LEVELS;
+use super::kernel::Kernel;
+use super::lanes::Lanes;
+use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
+use super::node::{Child, ChildRef, Node, Planes, WIDTH};
+use super::prepare::{Prepared, Rays, Row};
+use super::query::{Asked, CULL_SLACK, Candidate, Query};
+use super::traverse::Walk;
+use super::tree::FixedTree;
+use crate::geometry::HitPacket;
+
+/// Entries of a stack.
+const STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
+
+/// As many rays as this, or fewer, go on alone.
+const FEW: u32 = 1;
+
+/// Rays that are traced together, and what they have hit.
+#[repr(C, align(64))]
+pub struct Packet<'a, const N: usize> {
+    /// The rays, up to their nearest hits.
+    pub prepared: Prepared<N>,
+    /// Of the class at work: see [`Shear::axes`](super::triangle::Shear::axes).
+    axes: [usize; 3],
+    /// Of the class at work: see [`Slab::negative`](super::ray::Slab::negative).
+    negative: [usize; 3],
+    /// Nearest hits: geometries, primitives, instances.
+    pub ids: [[u32; N]; 3],
+    asked: Asked<'a>,
+}
+
+/// Something still to be visited.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Entry<const N: usize> {
+    /// Where each ray enters its box; without meaning for occlusion, which does not ask.
+    distance: Row<N>,
+    child: ChildRef,
+    /// Which rays.
+    lanes: u32,
+}
+
+/// What is still to be visited, the nearest on top.
+struct Stack<const N: usize> {
+    entries: [MaybeUninit<Entry<N>>; STACK],
+    depth: usize,
+}
+
+impl<const N: usize> Stack<N> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            entries: [const { MaybeUninit::uninit() }; STACK],
+            depth: 0,
+        }
+    }
+
+    /// Puts something on top; without `distance`, its distances are not written.
+    #[inline(always)]
+    fn push(&mut self, child: ChildRef, lanes: u32, distance: Option<&Row<N>>) {
+        let entry = self.entries[self.depth].as_mut_ptr();
+        // SAFETY: it points to an entry of the stack, of which only fields are written.
+        unsafe {
+            (*entry).child = child;
+            (*entry).lanes = lanes;
+            if let Some(distance) = distance {
+                (*entry).distance = *distance;
+            }
+        }
+        self.depth += 1;
+    }
+
+    /// Takes the top off: the child, its rays, and, if that is why it was written, the distances.
+    #[inline(always)]
+    fn pop<const ANY: bool>(&mut self) -> Option<(ChildRef, u32, Option<&Row<N>>)> {
+        self.depth = self.depth.checked_sub(1)?;
+        let entry = self.entries[self.depth].as_ptr();
+        // SAFETY: entries below the top were written, with distances unless `ANY`.
+        unsafe {
+            let distance = if ANY { None } else { Some(&(*entry).distance) };
+            Some(((*entry).child, (*entry).lanes, distance))
+        }
+    }
+}
+
+impl<'a, const N: usize> Packet<'a, N> {
+    /// Prepares rays.
+    #[inline(always)]
+    pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>, asked: Asked<'a>) -> Self {
+        Self {
+            prepared: Prepared::new(s, rays),
+            axes: [0, 1, 2],
+            negative: [0; 3],
+            ids: [[HitPacket::NONE; N]; 3],
+            asked,
+        }
+    }
+
+    /// Traces the rays of `lanes` through a tree. Returns those that it leaves out, as their directions are of an unusual size.
+    #[inline(always)]
+    pub fn trace<S: Lanes<N>, K: Kernel, const ANY: bool>(
+        &mut self,
+        s: S,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        lanes: u32,
+        stack: &mut [u64],
+    ) -> u32 {
+        let mut rest = lanes & self.prepared.usual;
+        while rest != 0 {
+            let mates = self.mates(rest);
+            rest &= !mates;
+            let first = mates.trailing_zeros() as usize;
+            self.axes = self.prepared.axes(first);
+            self.negative = self.prepared.negative.map(|signs| (signs >> first & 1) as usize);
+            self.together::<S, K, ANY>(s, walk, tree, mates, stack);
+        }
+        lanes & !self.prepared.usual
+    }
+
+    /// The rays of `rest` that have the signs of direction and the axis of its greatest component in common with the first.
+    #[inline(always)]
+    fn mates(&self, rest: u32) -> u32 {
+        let first = rest.trailing_zeros();
+        let Prepared { negative, greatest, .. } = &self.prepared;
+        let like_first = |mates: u32, bits: &u32| mates & if bits >> first & 1 == 1 { *bits } else { !bits };
+        negative.iter().chain(greatest).fold(rest, like_first)
+    }
+
+    /// Traces rays of one class.
+    #[inline(always)]
+    fn together<S: Lanes<N>, K: Kernel, const ANY: bool>(
+        &mut self,
+        s: S,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        mates: u32,
+        single_stack: &mut [u64],
+    ) {
+        let mut stack = Stack::new();
+        let mut current = ChildRef::ROOT;
+        let mut lanes = mates;
+        let mut alive = mates;
+        loop {
+            if lanes.count_ones() <= FEW {
+                self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
+            } else {
+                match current.get() {
+                    Child::Node(index) => {
+                        if let Some(next) = self.node::<S, K, ANY>(s, walk, tree, index, lanes, &mut stack) {
+                            (current, lanes) = next;
+                            continue;
+                        }
+                    }
+                    Child::Block(index) => self.block::<S, ANY>(s, &tree.blocks[index], lanes, walk.level.instance),
+                    Child::Sphere(_) | Child::Instance(_) => {
+                        self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
+                    }
+                }
+            }
+            if ANY {
+                alive = mates & !self.hits(s);
+            }
+            // The nearest of what is left, for the rays that have not hit something before it.
+            loop {
+                if alive == 0 {
+                    return;
+                }
+                let Some((child, rays, distance)) = stack.pop::<ANY>() else {
+                    return;
+                };
+                lanes = rays & alive;
+                if let Some(distance) = distance {
+                    lanes &= s.bits(s.le(s.load(distance), self.cull(s)));
+                }
+                if lanes != 0 {
+                    current = child;
+                    break;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn cull<S: Lanes<N>>(&self, s: S) -> S::F {
+        s.mul(s.load(&self.prepared.rays.tfar), s.splat(CULL_SLACK))
+    }
+
+    /// The lanes that have hit something.
+    #[inline(always)]
+    pub fn hits<S: Lanes<N>>(&self, s: S) -> u32 {
+        !s.bits(s.none(s.load_u(&self.ids[0])))
+    }
+
+    /// Where the rays enter one of the boxes of a node, and which of `lanes` meet it.
+    #[inline(always)]
+    fn slab<S: Lanes<N>>(&self, s: S, planes: &Planes, slot: usize, lanes: u32) -> (S::F, u32) {
+        let rays = &self.prepared;
+        let near = |axis: usize| {
+            let plane = s.splat(planes.0[2 * axis + (self.negative[axis] & 1)][slot]);
+            s.fused(plane, s.load(&rays.near_scale[axis]), s.load(&rays.near_shift[axis]))
+        };
+        let far = |axis: usize| {
+            let plane = s.splat(planes.0[2 * axis + 1 - (self.negative[axis] & 1)][slot]);
+            s.fused(plane, s.load(&rays.far_scale[axis]), s.load(&rays.far_shift[axis]))
+        };
+        let tnear = s.load(&rays.rays.tnear);
+        let enter = s.greatest(s.greatest(near(0), near(1)), s.greatest(near(2), tnear));
+        let leave = s.least(s.least(far(0), far(1)), s.least(far(2), self.cull(s)));
+        (enter, s.bits(s.le(enter, leave)) & lanes)
+    }
+
+    /// Puts all children that any ray meets but one on the stack and returns that one, with its rays.
+    #[inline(always)]
+    fn node<S: Lanes<N>, K: Kernel, const ANY: bool>(
+        &self,
+        s: S,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        index: usize,
+        lanes: u32,
+        stack: &mut Stack<N>,
+    ) -> Option<(ChildRef, u32)> {
+        let node = &tree.nodes[index];
+        let planes = node.fixed_planes();
+        let mut distances = [const { MaybeUninit::<Row<N>>::uninit() }; WIDTH];
+        let mut met = [(ChildRef::ROOT, 0); WIDTH];
+        let mut order: [u64; WIDTH] = std::array::from_fn(|place| place as u64);
+        let mut count = 0;
+        for slot in 0..WIDTH {
+            // Children come first.
+            if planes.is_empty(slot) {
+                break;
+            }
+            let (enter, some) = self.slab(s, planes, slot, lanes);
+            met[count] = (node.children()[slot], some);
+            if !ANY {
+                // SAFETY: it is written whole before it is read, and any bits are numbers.
+                let distance = unsafe { &mut *distances[count].as_mut_ptr() };
+                s.store(enter, distance);
+                // By the entry of one of the rays.
+                let key = distance[some.trailing_zeros() as usize % N].to_bits();
+                order[count] = u64::from(key) << 32 | count as u64;
+            }
+            count += usize::from(some != 0);
+        }
+        if !ANY && count > 1 {
+            sort_descending(&mut order[..count]);
+        }
+        let (last, others) = order[..count].split_last()?;
+        for &place in others {
+            let place = place as usize % WIDTH;
+            let (child, lanes) = met[place];
+            // SAFETY: with no `ANY`, those of the first `count` were written.
+            let distance = (!ANY).then(|| unsafe { distances[place].assume_init_ref() });
+            stack.push(child, lanes, distance);
+            walk.fetch(tree, child);
+        }
+        Some(met[*last as usize % WIDTH])
+    }
+
+    /// Tests the rays of `lanes` against the triangles of a block.
+    #[inline(always)]
+    fn block<S: Lanes<N>, const ANY: bool>(&mut self, s: S, block: &FixedBlock, lanes: u32, instance: u32) {
+        let ids = block.ids();
+        let corners = block.fixed_corners();
+        let mut planes = None;
+        for triangle in 0..TRIANGLES {
+            if ids.mask[triangle] == 0 {
+                continue;
+            }
+            let [x, y, z] = self.axes;
+            let offset = |corner: usize, axis: usize| {
+                let corner = s.splat(corners.0[corner][axis][triangle]);
+                s.sub(corner, s.load(&self.prepared.rays.origin[axis]))
+            };
+            let depth = [offset(0, z), offset(1, z), offset(2, z)];
+            let across = |axis: usize, scale: &Row<N>| {
+                let scale = s.load(scale);
+                let sheared = |corner: usize| s.sub(offset(corner, axis), s.mul(scale, depth[corner]));
+                [sheared(0), sheared(1), sheared(2)]
+            };
+            let ([ax, bx, cx], [ay, by, cy]) = (across(x, &self.prepared.scale[0]), across(y, &self.prepared.scale[1]));
+            let u = s.sub(s.mul(cx, by), s.mul(cy, bx));
+            let v = s.sub(s.mul(ax, cy), s.mul(ay, cx));
+            let w = s.sub(s.mul(bx, ay), s.mul(by, ax));
+            // A NaN is lost or makes neither true: the lane is not passed over here unless the other two differ in sign.
+            let (least, greatest) = (s.least(s.least(u, v), w), s.greatest(s.greatest(u, v), w));
+            let zero = s.splat(0.0);
+            let missed = s.and(s.lt(least, zero), s.lt(zero, greatest));
+            let possible = lanes & !s.bits(missed);
+            if possible == 0 {
+                continue;
+            }
+            let enter = |[a, b, c]: [S::F; 3]| s.least(s.least(a, b), c);
+            let leave = |[a, b, c]: [S::F; 3]| s.greatest(s.greatest(a, b), c);
+            let along = |axis: usize| {
+                let inverse = s.load(&self.prepared.inverse[axis]);
+                [0, 1, 2].map(|corner| s.mul(offset(corner, axis), inverse))
+            };
+            let scale = s.load(&self.prepared.scale[2]);
+            let (along_x, along_y, along_z) = (along(x), along(y), depth.map(|z| s.mul(scale, z)));
+            let first = leave([enter(along_x), enter(along_y), enter(along_z)]);
+            let last = enter([leave(along_x), leave(along_y), leave(along_z)]);
+            // Other rays miss the box, by rounding only.
+            let boxed = s.le(first, last);
+            let tnear = s.load(&self.prepared.rays.tnear);
+            let within = s.and(s.lt(tnear, last), s.le(first, s.load(&self.prepared.rays.tfar)));
+            let within = s.bits(within) | !s.bits(boxed);
+            let seen = s.meet(s.load_u(&self.prepared.rays.mask), s.splat_u(ids.mask[triangle]));
+            let possible = possible & within & s.bits(seen);
+            if possible == 0 {
+                continue;
+            }
+            // Zero, or NaN where the products overflow.
+            let sure = s.and(s.and(s.lt(zero, s.abs(u)), s.lt(zero, s.abs(v))), s.lt(zero, s.abs(w)));
+            let planes = planes.get_or_insert_with(|| s.planes(corners));
+            let distances = s.plane_distance(
+                planes,
+                triangle,
+                self.axes,
+                self.axes.map(|axis| &self.prepared.rays.origin[axis]),
+                self.axes.map(|axis| &self.prepared.rays.direction[axis]),
+            );
+            let t = s.least(s.greatest(distances, first), last);
+            let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
+            let exact = possible & s.bits(s.and(s.and(sure, finite), boxed));
+            let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.prepared.rays.tfar))));
+            let inexact = possible & !exact;
+            let candidate = Candidate {
+                t: 0.0,
+                geometry: ids.geometry[triangle],
+                primitive: ids.primitive[triangle],
+                instance,
+            };
+            if inexact == 0 && !self.asked.is_filtered(candidate.geometry) {
+                self.take_all(s, t, inside, &candidate);
+            } else {
+                let mut distances = [0.0; N];
+                s.store(t, &mut distances);
+                self.offer(&corners.lane(triangle), &distances, inside, inexact, candidate);
+            }
+        }
+    }
+
+    /// Takes the hits of the lanes of `inside`, which are in the range of their rays, where they precede the nearest so far.
+    #[inline(always)]
+    fn take_all<S: Lanes<N>>(&mut self, s: S, t: S::F, inside: u32, candidate: &Candidate) {
+        let tfar = s.load(&self.prepared.rays.tfar);
+        let closer = inside & s.bits(s.lt(t, tfar));
+        let mask = s.mask(closer);
+        s.store(s.blend(mask, tfar, t), &mut self.prepared.rays.tfar);
+        let ids = [candidate.geometry, candidate.primitive, candidate.instance];
+        for (row, id) in self.ids.iter_mut().zip(ids) {
+            s.store_u(s.blend_u(mask, s.load_u(row), s.splat_u(id)), row);
+        }
+        let mut ties = inside & !closer;
+        while ties != 0 {
+            let lane = ties.trailing_zeros() as usize;
+            ties &= ties - 1;
+            if ids < self.ids.map(|row| row[lane]) {
+                (0..3).for_each(|i| self.ids[i][lane] = ids[i]);
+            }
+        }
+    }
+
+    /// Offers hits one by one: those that single precision cannot decide, and those that a filter is asked about.
+    #[cold]
+    #[inline(never)]
+    fn offer(
+        &mut self,
+        corners: &[[f32; 3]; 3],
+        distances: &Row<N>,
+        inside: u32,
+        inexact: u32,
+        mut candidate: Candidate,
+    ) {
+        let mut rest = inside | inexact;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let shear = self.prepared.shear(lane);
+            candidate.t = distances[lane];
+            let mut query = self.query(lane);
+            if inexact >> lane & 1 != 0 {
+                match shear.distance(corners) {
+                    Some(t) if query.contains(t) => candidate.t = t,
+                    _ => continue,
+                }
+            }
+            if query.offer(&candidate, || shear.barycentrics(corners)) {
+                self.take(lane, &query);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn query(&self, lane: usize) -> Query<'a> {
+        Query {
+            ids: self.ids.map(|row| row[lane]),
+            ..self.prepared.query(lane, self.asked)
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, lane: usize, query: &Query) {
+        self.prepared.rays.tfar[lane] = query.tfar;
+        (0..3).for_each(|i| self.ids[i][lane] = query.ids[i]);
+    }
+
+    /// Traces rays one by one from `start` on.
+    #[inline(always)]
+    fn alone<K: Kernel, const ANY: bool>(
+        &mut self,
+        walk: &Walk<'_, K>,
+        tree: &FixedTree,
+        start: ChildRef,
+        lanes: u32,
+        stack: &mut [u64],
+    ) {
+        let mut rest = lanes;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let ray = self.prepared.local(lane);
+            let mut query = self.query(lane);
+            walk.kernel.fixed::<ANY>(walk, tree, start, &ray, &mut query, stack);
+            self.take(lane, &query);
+        }
+    }
+}
+
+#[inline(always)]
+fn sort_descending(keys: &mut [u64]) {
+    for i in 1..keys.len() {
+        let key = keys[i];
+        let mut place = i;
+        while place > 0 && keys[place - 1] < key {
+            keys[place] = keys[place - 1];
+            place -= 1;
+        }
+        keys[place] = key;
+    }
+}

@@ -1,0 +1,178 @@
+//! Rays prepared for boxes and triangles, a lane for each: what [`LocalRay::new`] computes, by the same operations.
+
+use super::lanes::Lanes;
+use super::query::{Asked, CULL_SLACK, Query};
+use super::ray::{FAR_SLACK, LEAST_SLOPE, LocalRay, MARGIN, NEAR_SLACK, Slab, USUAL_SIZES};
+use super::triangle::Shear;
+use crate::geometry::HitPacket;
+use crate::math::Vec3;
+
+/// A row of a number for each ray.
+pub type Row<const N: usize> = [f32; N];
+
+/// Rays as they are given, by lane.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Rays<const N: usize> {
+    /// Origin.
+    pub origin: [Row<N>; 3],
+    /// Direction.
+    pub direction: [Row<N>; 3],
+    /// Start of the segment.
+    pub tnear: Row<N>,
+    /// End of the segment, then of the nearest hit.
+    pub tfar: Row<N>,
+    /// Time.
+    pub time: Row<N>,
+    /// Mask.
+    pub mask: [u32; N],
+    /// For a filter.
+    pub id: [u32; N],
+}
+
+impl<const N: usize> Rays<N> {
+    /// Rays that take no part.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self {
+            origin: [[0.0; N]; 3],
+            direction: [[0.0; N], [0.0; N], [1.0; N]],
+            tnear: [0.0; N],
+            tfar: [0.0; N],
+            time: [0.0; N],
+            mask: [0; N],
+            id: [0; N],
+        }
+    }
+}
+
+/// Rays, and what is computed from them.
+#[repr(C, align(64))]
+pub struct Prepared<const N: usize> {
+    /// The rays.
+    pub rays: Rays<N>,
+    /// See [`Slab::near`].
+    pub near_scale: [Row<N>; 3],
+    /// See [`Slab::near`].
+    pub near_shift: [Row<N>; 3],
+    /// See [`Slab::far`].
+    pub far_scale: [Row<N>; 3],
+    /// See [`Slab::far`].
+    pub far_shift: [Row<N>; 3],
+    /// See [`Shear::scale`].
+    pub scale: [Row<N>; 3],
+    /// See [`Shear::inverse`]; of all axes.
+    pub inverse: [Row<N>; 3],
+    /// Rays whose directions are negative, by axis.
+    pub negative: [u32; 3],
+    /// Rays whose direction is greatest along an axis.
+    pub greatest: [u32; 3],
+    /// Rays whose directions are of a [usual size](USUAL_SIZES). Of others nothing else is right.
+    pub usual: u32,
+}
+
+impl<const N: usize> Prepared<N> {
+    /// Prepares rays.
+    #[inline(always)]
+    pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>) -> Self {
+        let origin = rays.origin.each_ref().map(|row| s.load(row));
+        let direction = rays.direction.each_ref().map(|row| s.load(row));
+        let size = origin.map(|x| s.abs(x));
+        let slope = direction.map(|x| s.abs(x));
+        let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
+        let (greatest, steepest) = (most(size), most(slope));
+        let least = s.mul(s.splat(LEAST_SLOPE), steepest);
+        let [x, y, z] = slope;
+        let is_x = s.and(s.lt(y, x), s.lt(z, x));
+        let is_y = s.lt(z, y);
+        let [dx, dy, dz] = direction;
+        let pick = |a, b, c| s.blend(is_x, s.blend(is_y, c, b), a);
+        let along = pick(dx, dy, dz);
+        let bits = [s.bits(is_x), s.bits(is_y) & !s.bits(is_x)];
+        let (smallest, largest) = (s.splat(*USUAL_SIZES.start()), s.splat(*USUAL_SIZES.end()));
+        let mut prepared = Self {
+            near_scale: [[0.0; N]; 3],
+            near_shift: [[0.0; N]; 3],
+            far_scale: [[0.0; N]; 3],
+            far_shift: [[0.0; N]; 3],
+            scale: [[0.0; N]; 3],
+            inverse: [[0.0; N]; 3],
+            negative: direction.map(|d| s.signs(d)),
+            greatest: [bits[0], bits[1], !(bits[0] | bits[1])],
+            usual: s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest))),
+            rays,
+        };
+        s.store(s.div(pick(dy, dz, dx), along), &mut prepared.scale[0]);
+        s.store(s.div(pick(dz, dx, dy), along), &mut prepared.scale[1]);
+        s.store(s.div(s.splat(1.0), along), &mut prepared.scale[2]);
+        for axis in 0..3 {
+            let margin = s.mul(s.splat(MARGIN), s.add(size[axis], greatest));
+            let margin = s.copysign(margin, direction[axis]);
+            let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
+            let scale = s.div(s.splat(1.0), scale);
+            s.store(scale, &mut prepared.inverse[axis]);
+            let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
+            let minus = |x: S::F| s.sub(s.splat(0.0), x);
+            s.store(near, &mut prepared.near_scale[axis]);
+            s.store(far, &mut prepared.far_scale[axis]);
+            let shift = s.mul(minus(s.add(origin[axis], margin)), near);
+            s.store(shift, &mut prepared.near_shift[axis]);
+            let shift = s.mul(minus(s.sub(origin[axis], margin)), far);
+            s.store(shift, &mut prepared.far_shift[axis]);
+        }
+        prepared
+    }
+
+    /// The axes of the shear of a ray.
+    #[inline(always)]
+    pub fn axes(&self, lane: usize) -> [usize; 3] {
+        const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+        let bit = |axis: usize| (self.greatest[axis] >> lane & 1) as usize;
+        AXES[bit(1) + 2 * bit(2)]
+    }
+
+    /// What triangles need of a ray.
+    #[inline(always)]
+    pub fn shear(&self, lane: usize) -> Shear {
+        let axes = self.axes(lane);
+        Shear {
+            axes,
+            origin: axes.map(|axis| self.rays.origin[axis][lane]),
+            direction: axes.map(|axis| self.rays.direction[axis][lane]),
+            scale: self.scale.each_ref().map(|row| row[lane]),
+            inverse: [self.inverse[axes[0]][lane], self.inverse[axes[1]][lane]],
+        }
+    }
+
+    /// One ray.
+    #[inline(always)]
+    pub fn local(&self, lane: usize) -> LocalRay {
+        let at = |rows: &[Row<N>; 3]| rows.each_ref().map(|row| row[lane]);
+        LocalRay {
+            origin: Vec3::from_array(at(&self.rays.origin)),
+            direction: Vec3::from_array(at(&self.rays.direction)),
+            slab: Slab {
+                near: [0, 1, 2].map(|axis| [self.near_scale[axis][lane], self.near_shift[axis][lane]]),
+                far: [0, 1, 2].map(|axis| [self.far_scale[axis][lane], self.far_shift[axis][lane]]),
+                negative: self.negative.map(|signs| (signs >> lane & 1) as usize),
+            },
+            shear: self.shear(lane),
+        }
+    }
+
+    /// The query of one ray, with nothing hit.
+    #[inline(always)]
+    pub fn query<'a>(&self, lane: usize, asked: Asked<'a>) -> Query<'a> {
+        Query {
+            tnear: self.rays.tnear[lane] + 0.0,
+            tfar: self.rays.tfar[lane],
+            cull: self.rays.tfar[lane] * CULL_SLACK,
+            ids: [HitPacket::NONE; 3],
+            mask: self.rays.mask[lane],
+            time: self.rays.time[lane],
+            ray_id: self.rays.id[lane],
+            scale: 1.0,
+            asked,
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! A call's rays, put together to packets of rays that are likely to stay together.
+
+use super::Scene;
+use super::interleave::{self, Interleaved};
+use super::lanes::Lanes;
+use super::packet::Packet;
+use super::prepare::{Prepared, Rays};
+use super::query::{Asked, Query};
+use super::ray::{LocalRay, direction_scale};
+use super::traverse::{Level, STACK, Walk};
+use super::tree::FixedTree;
+use crate::accel::{HitFilter, RayKind};
+use crate::geometry::{HitPacket, LANES, RayPacket};
+use crate::math::Bounds3;
+
+impl Scene {
+    /// Whether packets can be traced: all that moves is in instances.
+    pub fn takes_packets(&self) -> bool {
+        self.top.fixed.is_some() && self.top.moving.is_empty()
+    }
+}
+
+/// Classes of rays, by the signs of the direction and the axis of its greatest component.
+const CLASSES: usize = 24;
+
+/// Cells of the box of the tree along each axis, in bits.
+const CELL_BITS: u32 = 2;
+
+/// Cells in all.
+const CELLS: usize = 1 << (3 * CELL_BITS);
+
+/// Rays that are sorted at a time.
+const BATCH: usize = 4096;
+
+fn active(packet: &RayPacket) -> u32 {
+    (0..LANES).fold(0, |bits, lane| bits | u32::from(packet.is_active(lane)) << lane)
+}
+
+/// The rays of neighbouring packets, as many as there are up to N / LANES, and which take part.
+#[inline(always)]
+fn neighbours<const N: usize>(packets: &[RayPacket]) -> (Rays<N>, u32) {
+    let mut rays = Rays::none();
+    let mut lanes = 0;
+    for (i, packet) in packets.iter().enumerate() {
+        let at = i * LANES..(i + 1) * LANES;
+        let origin = [&packet.org_x, &packet.org_y, &packet.org_z];
+        let direction = [&packet.dir_x, &packet.dir_y, &packet.dir_z];
+        for axis in 0..3 {
+            rays.origin[axis][at.clone()].copy_from_slice(origin[axis]);
+            rays.direction[axis][at.clone()].copy_from_slice(direction[axis]);
+        }
+        rays.tnear[at.clone()].copy_from_slice(&packet.tnear);
+        rays.tfar[at.clone()].copy_from_slice(&packet.tfar);
+        rays.time[at.clone()].copy_from_slice(&packet.time);
+        rays.mask[at.clone()].copy_from_slice(&packet.mask);
+        rays.id[at].copy_from_slice(&packet.id);
+        lanes |= active(packet) << (i * LANES);
+    }
+    (rays, lanes)
+}
+
+/// Where a ray of a call is: packet * LANES + lane.
+type Place = u16;
+
+/// The class of a direction.
+#[inline(always)]
+fn class([x, y, z]: [f32; 3]) -> usize {
+    let sign = |x: f32| x.to_bits() >> 31;
+    let size = [x.abs(), y.abs(), z.abs()];
+    let is_x = (size[0] > size[1]) & (size[0] > size[2]);
+    let axis = if is_x { 0 } else { 1 + u32::from(size[2] >= size[1]) };
+    (axis << 3 | sign(z) << 2 | sign(y) << 1 | sign(x)) as usize
+}
+
+/// Puts rays in the order of their classes, and within a class of the cells that they start in; those that take no part are left out.
+/// Returns how many there are.
+fn sort(packets: &[RayPacket], bounds: &Bounds3, places: &mut [Place; BATCH]) -> usize {
+    let mut classes = [0u16; BATCH];
+    let mut counts = [0u16; CLASSES * CELLS + 1];
+    let low = bounds.min;
+    let scale = ((1 << CELL_BITS) as f32 / bounds.extent()).to_array();
+    let cell = |x: f32, axis: usize| ((x - low[axis]) * scale[axis]).clamp(0.0, ((1 << CELL_BITS) - 1) as f32) as u32;
+    // Spreads the bits of a cell number two apart.
+    let spread = |x: u32| (x & 1) | (x & 2) << 2;
+    for (packet, classes) in packets.iter().zip(classes.chunks_exact_mut(LANES)) {
+        for (lane, to) in classes.iter_mut().enumerate() {
+            let class = class([packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]]);
+            let at = [packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]];
+            let at = [0, 1, 2].map(|axis| spread(cell(at[axis], axis)) << axis);
+            let class = class * CELLS + (at[0] | at[1] | at[2]) as usize;
+            *to = if packet.is_active(lane) { class } else { CLASSES * CELLS } as u16;
+        }
+        for &class in &*classes {
+            counts[class as usize] += 1;
+        }
+    }
+    let mut first = 0;
+    for count in &mut counts {
+        first += std::mem::replace(count, first);
+    }
+    for (place, &class) in classes[..packets.len() * LANES].iter().enumerate() {
+        let next = &mut counts[class as usize];
+        places[*next as usize] = place as Place;
+        *next += 1;
+    }
+    counts[CLASSES * CELLS - 1] as usize
+}
+
+/// The rays at the given places, at most N.
+#[inline(always)]
+fn gather<const N: usize>(packets: &[RayPacket], places: &[Place]) -> Rays<N> {
+    let mut rays = Rays::none();
+    for (lane, &place) in places.iter().enumerate() {
+        let (packet, from) = (&packets[place as usize / LANES], place as usize % LANES);
+        rays.origin[0][lane] = packet.org_x[from];
+        rays.origin[1][lane] = packet.org_y[from];
+        rays.origin[2][lane] = packet.org_z[from];
+        rays.direction[0][lane] = packet.dir_x[from];
+        rays.direction[1][lane] = packet.dir_y[from];
+        rays.direction[2][lane] = packet.dir_z[from];
+        rays.tnear[lane] = packet.tnear[from];
+        rays.tfar[lane] = packet.tfar[from];
+        rays.time[lane] = packet.time[from];
+        rays.mask[lane] = packet.mask[from];
+        rays.id[lane] = packet.id[from];
+    }
+    rays
+}
+
+/// What all packets of a call have in common.
+struct Call<'a, S, K, const N: usize> {
+    s: S,
+    kernel: K,
+    scene: &'a Scene,
+    tree: &'a FixedTree,
+    level: Level<'a>,
+    asked: Asked<'a>,
+    filter: Option<&'a dyn HitFilter>,
+}
+
+impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
+    #[inline(always)]
+    fn new(s: S, kernel: K, scene: &'a Scene, tree: &'a FixedTree, filter: Option<&'a dyn HitFilter>) -> Self {
+        Self {
+            s,
+            kernel,
+            scene,
+            tree,
+            level: Level {
+                trees: &scene.top,
+                instance: HitPacket::NONE,
+            },
+            asked: Asked {
+                filter,
+                filtered: &scene.filtered,
+            },
+            filter,
+        }
+    }
+
+    /// Traces a packet; returns it, with the lanes that it left out.
+    #[inline(always)]
+    fn trace<const ANY: bool>(&self, rays: Rays<N>, lanes: u32, stack: &mut [u64]) -> (Packet<'a, N>, u32) {
+        let walk = Walk {
+            kernel: self.kernel,
+            scene: self.scene,
+            level: &self.level,
+        };
+        let mut packet = Packet::new(self.s, rays, self.asked);
+        let rest = packet.trace::<S, K, ANY>(self.s, &walk, self.tree, lanes, stack);
+        (packet, rest)
+    }
+
+    /// Traces rays that have little in common.
+    #[inline(always)]
+    fn one_by_one<const ANY: bool>(
+        &self,
+        packets: &[RayPacket],
+        places: &[Place],
+        stack: &mut [u64; STACK],
+        done: impl FnMut(usize, &Query<'a>),
+    ) {
+        let walk = Walk {
+            kernel: self.kernel,
+            scene: self.scene,
+            level: &self.level,
+        };
+        let feed = Feed {
+            call: self,
+            packets,
+            places,
+            prepared: None,
+            next: 0,
+        };
+        interleave::trace::<K, ANY>(&walk, self.tree, feed, done, stack);
+    }
+
+    /// Traces one ray.
+    #[cold]
+    fn alone<const ANY: bool>(&self, packet: &RayPacket, lane: usize, stack: &mut [u64; STACK]) -> Option<Query<'a>> {
+        self.scene
+            .trace::<K, ANY>(self.kernel, packet, lane, self.filter, stack)
+    }
+}
+
+/// Prepares rays, eight at a time, and gives them one by one.
+struct Feed<'a, 'b, S, K, const N: usize> {
+    call: &'b Call<'a, S, K, N>,
+    packets: &'b [RayPacket],
+    places: &'b [Place],
+    prepared: Option<Prepared<N>>,
+    next: usize,
+}
+
+impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> interleave::Source<'a> for Feed<'a, '_, S, K, N> {
+    #[inline(always)]
+    fn next(&mut self) -> Option<(usize, LocalRay, Query<'a>)> {
+        let lane = self.next % N;
+        let rest = self.places.get(self.next..)?;
+        let place = *rest.first()? as usize;
+        if lane == 0 {
+            let rays = gather(self.packets, &rest[..rest.len().min(N)]);
+            self.prepared = Some(Prepared::new(self.call.s, rays));
+        }
+        self.next += 1;
+        let prepared = self.prepared.as_ref()?;
+        if prepared.usual >> lane & 1 == 1 {
+            return Some((place, prepared.local(lane), prepared.query(lane, self.call.asked)));
+        }
+        let ray = self.packets[place / LANES].get(place % LANES);
+        let scale = direction_scale(ray.direction);
+        let local = LocalRay::new(ray.origin, ray.direction * scale);
+        Some((place, local, Query::new(&ray, scale, self.call.asked)))
+    }
+}
+
+fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        (bits != 0).then(|| {
+            bits &= bits - 1;
+            lane
+        })
+    })
+}
+
+/// Nearest hits.
+#[inline(always)]
+pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
+    s: S,
+    kernel: K,
+    scene: &Scene,
+    kind: RayKind,
+    packets: &[RayPacket],
+    hits: &mut [HitPacket],
+    filter: Option<&dyn HitFilter>,
+) {
+    let Some(tree) = &scene.top.fixed else { return };
+    let call = Call::new(s, kernel, scene, tree, filter);
+    let mut stack = [0; STACK];
+    if kind == RayKind::Camera {
+        for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
+            let (rays, lanes) = neighbours(given);
+            let (packet, rest) = call.trace::<false>(rays, lanes, &mut stack);
+            for (i, hits) in hits.iter_mut().enumerate() {
+                let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
+                *hits = HitPacket {
+                    geometry: at(&packet.ids[0]),
+                    primitive: at(&packet.ids[1]),
+                    instance: at(&packet.ids[2]),
+                    t: std::array::from_fn(|lane| packet.prepared.rays.tfar[i * LANES + lane]),
+                };
+            }
+            for lane in lanes_of(rest) {
+                let (at, lane) = (lane / LANES, lane % LANES);
+                if let Some(query) = call.alone::<false>(&given[at], lane, &mut stack) {
+                    query.store(&mut hits[at], lane);
+                }
+            }
+        }
+        return;
+    }
+    let mut places = [0; BATCH];
+    for (packets, hits) in packets.chunks(BATCH / LANES).zip(hits.chunks_mut(BATCH / LANES)) {
+        for (packet, hits) in packets.iter().zip(&mut *hits) {
+            *hits = HitPacket {
+                t: packet.tfar,
+                ..HitPacket::EMPTY
+            };
+        }
+        let count = sort(packets, &tree.bounds, &mut places);
+        if tree.nodes.len() > scene.limits.bounces {
+            call.one_by_one::<false>(packets, &places[..count], &mut stack, |place, query| {
+                query.store(&mut hits[place / LANES], place % LANES);
+            });
+            continue;
+        }
+        for places in places[..count].chunks(N) {
+            let lanes = (1 << places.len()) - 1;
+            let (packet, rest) = call.trace::<false>(gather(packets, places), lanes, &mut stack);
+            for (lane, &place) in places.iter().enumerate() {
+                let (at, to) = (place as usize / LANES, place as usize % LANES);
+                if rest >> lane & 1 == 1 {
+                    if let Some(query) = call.alone::<false>(&packets[at], to, &mut stack) {
+                        query.store(&mut hits[at], to);
+                    }
+                    continue;
+                }
+                hits[at].geometry[to] = packet.ids[0][lane];
+                hits[at].primitive[to] = packet.ids[1][lane];
+                hits[at].instance[to] = packet.ids[2][lane];
+                hits[at].t[to] = packet.prepared.rays.tfar[lane];
+            }
+        }
+    }
+}
+
+/// Whether there is any hit.
+#[inline(always)]
+pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
+    s: S,
+    kernel: K,
+    scene: &Scene,
+    packets: &mut [RayPacket],
+    filter: Option<&dyn HitFilter>,
+) {
+    let Some(tree) = &scene.top.fixed else { return };
+    let call = Call::new(s, kernel, scene, tree, filter);
+    let mut stack = [0; STACK];
+    let mut places = [0; BATCH];
+    for packets in packets.chunks_mut(BATCH / LANES) {
+        let count = sort(packets, &tree.bounds, &mut places);
+        if tree.nodes.len() > scene.limits.shadows {
+            let mut found = [0u8; BATCH / LANES];
+            call.one_by_one::<true>(packets, &places[..count], &mut stack, |place, query| {
+                found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);
+            });
+            for (packet, &found) in packets.iter_mut().zip(&found) {
+                lanes_of(found.into()).for_each(|lane| packet.tfar[lane] = f32::NEG_INFINITY);
+            }
+            continue;
+        }
+        for places in places[..count].chunks(N) {
+            let lanes = (1 << places.len()) - 1;
+            let (packet, rest) = call.trace::<true>(gather(packets, places), lanes, &mut stack);
+            let mut found = packet.hits(s) & lanes;
+            for lane in lanes_of(rest) {
+                let place = places[lane] as usize;
+                if let Some(query) = call.alone::<true>(&packets[place / LANES], place % LANES, &mut stack) {
+                    found |= u32::from(query.is_hit()) << lane;
+                }
+            }
+            for lane in lanes_of(found) {
+                let place = places[lane] as usize;
+                packets[place / LANES].tfar[place % LANES] = f32::NEG_INFINITY;
+            }
+        }
+    }
+}
