@@ -82,6 +82,29 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
         ),
         (&["render", "ball.pbrt", "--strategies-depth", "3"], "--strategies"),
         (
+            &["render", "ball.pbrt", "--terms", "direct"],
+            "--terms is for the integrators `photon` and `sppm`: `path` does not take light apart",
+        ),
+        (
+            &[
+                "render",
+                "ball.pbrt",
+                "--integrator",
+                "photon",
+                "--terms",
+                "direct,shiny",
+            ],
+            "shiny",
+        ),
+        (
+            &["render", "ball.pbrt", "--integrator", "sppm", "--terms", ""],
+            "--terms",
+        ),
+        (
+            &["render", "ball.pbrt", "--integrator", "sppm", "--strategy", "light"],
+            "`sppm` has no strategies",
+        ),
+        (
             &[
                 "render",
                 "ball.pbrt",

@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_PI;
 use super::ShownMap;
 use super::carried::Carried;
 use super::eye::{Event, Eye, EyeState, Phase, Way};
-use super::irradiance::IrradianceMap;
+use super::irradiance::{IrradianceMap, PHOTONS_PER_RECORD};
 use super::kd_tree::Nearest;
 use super::map::{Gathering, PhotonMap, Receiver};
 use crate::desc::Term;
@@ -169,6 +169,18 @@ impl GatherPass<'_> {
         }
     }
 
+    /// The irradiance on the side of the normal, and how far away the photons are that it comes from. Where no point near by has
+    /// it worked out, photons are asked without those that such points are made of: that there is none of these is no chance.
+    fn irradiance(&self, receiver: &Receiver, found: &mut Nearest) -> (Carried, f32) {
+        let Maps { global, irradiance, .. } = self.maps;
+        let max_distance = self.gathering.max_distance;
+        if let Some(known) = irradiance.at(receiver.p, receiver.ng, receiver.error, max_distance, found) {
+            return (known.irradiance, known.reach);
+        }
+        let irradiance = global.nearest_irradiance(receiver, PHOTONS_PER_RECORD, &self.gathering, found);
+        (irradiance, found.radius_squared().sqrt())
+    }
+
     /// What a gather ray met.
     fn gathered(&self, stage: &mut Stage<'_, '_, Self>, event: &Event<'_, '_>, way: Way<'_>, ray: &Ray) {
         if !self.eye.terms.indirect {
@@ -177,16 +189,12 @@ impl GatherPass<'_> {
         let (Event { si, bsdf, .. }, (lane, numbers)) = (event, way);
         let found = &mut *stage.memory;
         let receiver = Receiver::new(si, stage.depth, self.eye.max_depth);
-        let reflectance = bsdf.lambertian_reflectance();
-        let known = match reflectance {
-            Some(_) if receiver.max_depth == self.maps.irradiance_depth => {
+        let (radiance, factor, reach) = match bsdf.lambertian_reflectance() {
+            Some(reflectance) if receiver.max_depth == self.maps.irradiance_depth => {
                 let ng = if si.ng.dot(si.wo) < 0.0 { -si.ng } else { si.ng };
-                (self.maps.irradiance).at(si.p, ng, receiver.error, self.gathering.max_distance, found)
+                let (irradiance, reach) = self.irradiance(&Receiver { ng, ..receiver }, found);
+                (irradiance, reflectance * FRAC_1_PI, reach)
             }
-            _ => None,
-        };
-        let (radiance, factor, reach) = match (known, reflectance) {
-            (Some(known), Some(reflectance)) => (known.irradiance, reflectance * FRAC_1_PI, known.reach),
             _ => {
                 let radiance = (self.maps.global).nearest_radiance(si, bsdf, &receiver, &self.gathering, found);
                 (radiance, SampledSpectrum::ONE, found.radius_squared().sqrt())

@@ -10,7 +10,7 @@ use super::stored::Photon;
 use crate::math::Vec3;
 
 /// One photon in so many has its irradiance, as Christensen has it.
-const PHOTONS_PER_RECORD: u32 = 4;
+pub(super) const PHOTONS_PER_RECORD: u32 = 4;
 /// Cosine of the angle between the normals of a point and of a record that stands for it: 25 degrees.
 const LEAST_NORMAL_COS: f32 = 0.9;
 /// How far from the tangent plane a record may be, in units of its distance.

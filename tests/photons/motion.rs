@@ -1,0 +1,42 @@
+//! What moves: each pass has one time, the mean over passes is what `path` sees.
+
+use lucerna::integrator::Integrator;
+use lucerna::spectrum::ColorMode;
+
+use crate::{assert_agree, build, film, photon, quad, runs, sppm};
+
+/// A diffuse ball and a ball of glass that move before a wall, under a large lamp.
+fn scene() -> String {
+    format!(
+        "LookAt 0 1 -4  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 38 \"float shutteropen\" 0 \"float shutterclose\" 1\n{}WorldBegin\n\
+         AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [3 2.7 2.4]\n{}AttributeEnd\n\
+         Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.5]\n{}{}\
+         AttributeBegin ActiveTransform EndTime Translate 0.8 0.4 0 ActiveTransform All Translate -0.9 0.5 0\n\
+         Material \"diffuse\" \"rgb reflectance\" [0.8 0.3 0.3] Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n\
+         AttributeBegin ActiveTransform EndTime Translate 0 0.6 0 ActiveTransform All Translate 0.7 0.5 0\n\
+         Material \"dielectric\" \"float eta\" 1.5 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n",
+        film([16, 8]),
+        quad([-1.5, 3.0, -1.5], [3.0, 0.0, 0.0], [0.0, 0.0, 3.0]),
+        quad([-3.0, 0.0, -3.0], [0.0, 0.0, 4.0], [6.0, 0.0, 0.0]),
+        quad([-3.0, 0.0, 1.0], [0.0, 3.0, 0.0], [6.0, 0.0, 0.0]),
+    )
+}
+
+#[test]
+fn a_moving_scene_is_what_path_sees() {
+    let built = build(&scene(), ColorMode::Rgb);
+    let depth = Some(4);
+    let path = Integrator::from_desc(&built.desc.integrator).with_max_depth(depth);
+    let reference = runs(&built, path, 96, 101, [8, 8]);
+    let two_pass = photon(depth, |p| {
+        p.global_photons = Some(20_000);
+        p.caustic_photons = Some(20_000);
+        p.max_distance = Some(0.1);
+        p.passes = 4;
+        p.final_gather_samples = 4;
+    });
+    for integrator in [two_pass, sppm(depth, 4000, 0.12)] {
+        let ours = runs(&built, integrator, 32, 1, [8, 8]);
+        assert_agree(integrator.name(), &ours, &reference, 0.01, 0.05);
+    }
+}
