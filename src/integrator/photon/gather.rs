@@ -177,7 +177,7 @@ impl GatherPass<'_> {
         if let Some(known) = irradiance.at(receiver.p, receiver.ng, receiver.error, max_distance, found) {
             return (known.irradiance, known.reach);
         }
-        let irradiance = global.nearest_irradiance(receiver, PHOTONS_PER_RECORD, &self.gathering, found);
+        let irradiance = global.nearest_irradiance_of_others(receiver, PHOTONS_PER_RECORD, &self.gathering, found);
         (irradiance, found.radius_squared().sqrt())
     }
 
