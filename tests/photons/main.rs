@@ -24,7 +24,7 @@ use common::render::{Built, blocks, combinations};
 use common::{effort, full_tier};
 use lucerna::accel::Backend;
 use lucerna::desc::{PhotonDesc, SppmDesc};
-use lucerna::integrator::{Integrator, PhotonIntegrator, SppmIntegrator};
+use lucerna::integrator::{Integrator, Limits, PhotonIntegrator, SppmIntegrator};
 use lucerna::scene::ViewOverrides;
 use lucerna::spectrum::ColorMode;
 
@@ -32,7 +32,11 @@ use lucerna::spectrum::ColorMode;
 fn photon(max_depth: Option<u32>, change: impl FnOnce(&mut PhotonDesc)) -> Integrator {
     let mut parameters = PhotonDesc::default();
     change(&mut parameters);
-    Integrator::Photon(PhotonIntegrator { max_depth, parameters })
+    Integrator::Photon(PhotonIntegrator {
+        max_depth,
+        parameters,
+        shown: None,
+    })
 }
 
 /// The progressive renderer with so many photons a pass and this first radius.
@@ -42,7 +46,11 @@ fn sppm(max_depth: Option<u32>, photons: u32, radius: f32) -> Integrator {
         radius: Some(radius),
         ..SppmDesc::default()
     };
-    Integrator::Sppm(SppmIntegrator { max_depth, parameters })
+    Integrator::Sppm(SppmIntegrator {
+        max_depth,
+        parameters,
+        limits: Limits::default(),
+    })
 }
 
 /// A scene on the first backend.
