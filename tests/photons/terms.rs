@@ -97,8 +97,8 @@ fn both(max_depth: Option<u32>) -> [(Integrator, u32); 2] {
 #[test]
 fn all_terms_together_are_what_path_finds() {
     for (name, things) in rooms() {
-        // The plainest is in the full tier only.
-        if name.starts_with("diffuse") && !full_tier() {
+        // The others are in the full tier only.
+        if !matches!(name, "glass and mirror" | "coats") && !full_tier() {
             continue;
         }
         let built = build(&room(&things), ColorMode::Rgb);
@@ -233,7 +233,8 @@ fn each_kind_of_path_shows_in_its_term_only() {
                 continue;
             }
             let ours = runs(&built, integrator, spp, 1, [6, 8]);
-            assert_agree(&name, &ours, &reference, 0.01, 0.1);
+            // A path that is counted twice, or never, is half or all of what is seen.
+            assert_agree(&name, &ours, &reference, 0.01, 0.4);
         }
     }
 }

@@ -59,11 +59,11 @@ fn flux(inside: &str, keep: Keep, max_depth: Option<u32>, until: Until, is_guide
     (mean, (variance / 16.0).sqrt())
 }
 
-/// The deviation must be small enough to see one percent.
+/// The deviation must be small enough to see 1.5 percent.
 #[track_caller]
 fn assert_flux((mean, deviation): (f64, f64), expected: f64, name: &str) {
     println!("{name}: {mean} +- {deviation}, expected {expected}");
-    assert!(deviation < 2e-3 * expected, "{name}: {deviation}");
+    assert!(deviation < 3e-3 * expected, "{name}: {deviation}");
     // Up to 5e-4 are the rounding of powers and the photon path that is left out at the end.
     let far = (mean - expected).abs();
     assert!(
