@@ -195,9 +195,9 @@ fn follow(
 }
 
 /// Pilots that teach where caustics come from: of the first round, unaimed, up to [`MOST_PILOTS`] if those find nothing.
-const FIRST_PILOTS: u32 = 1 << 16;
+const FIRST_PILOTS: u32 = 1 << 14;
 /// Of later rounds together, aimed by what is known from those before.
-const LEAST_LATER_PILOTS: u32 = 1 << 17;
+const LEAST_LATER_PILOTS: u32 = 1 << 15;
 const MOST_PILOTS: u32 = 1 << 20;
 /// A pilot teaches for so many photons: what no pilot found is found by a photon that is much brighter than the others, and the more
 /// photons there are the more of these there would be.
