@@ -105,6 +105,10 @@ fn all_terms_together_are_what_path_finds() {
         let depth = Some(4);
         let reference = runs(&built, named(&built, "path", depth), 96, 101, [8, 8]);
         for (integrator, spp) in both(depth) {
+            // Each room by one of them, where it has shown mistakes.
+            if !full_tier() && (name == "coats") == matches!(integrator, Integrator::Sppm(_)) {
+                continue;
+            }
             let name = format!("{name} by {}", integrator.name());
             let ours = runs(&built, integrator, spp, 1, [8, 8]);
             assert_agree(&name, &ours, &reference, 0.01, 0.05);
