@@ -22,6 +22,7 @@
 mod adjoint;
 mod bdpt;
 mod direct;
+mod emission;
 mod fault;
 mod kajiya;
 mod lane;

@@ -68,7 +68,7 @@ fn occluded(s: Avx512, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dy
 macro_rules! with {
     ($($body:tt)*) => {{
         // SAFETY: `self` proves that the processor has AVX-512; what is loaded or stored is a reference to as much.
-        #[allow(unused_unsafe)]
+        #[allow(unused_unsafe, reason = "an intrinsic without pointers is safe where its feature is known")]
         unsafe { $($body)* }
     }};
 }

@@ -6,6 +6,7 @@ use super::pyramid::Record;
 use super::{BdptIntegrator, Event, Origin, State, Strategies, SubpathStage};
 use crate::geometry::{Ray, SurfaceInteraction};
 use crate::integrator::adjoint::bend;
+use crate::integrator::emission::sample_emission;
 use crate::integrator::lane::Lane;
 use crate::integrator::numbers::EmissionNumbers;
 use crate::integrator::shadow::{NO_NOTE, SplatContribution};
@@ -160,23 +161,10 @@ impl BdptIntegrator {
     /// Draws a light by its power, and a ray from it.
     pub(super) fn start_light_path(&self, stage: &mut SubpathStage<'_, '_>, slot: u32, stream: SampleStream) {
         let numbers = EmissionNumbers::draw(&stream);
-        let scene = stage.scene;
-        let Some(chosen) = scene
-            .emission_sampler()
-            .sample(Vec3::ZERO, Vec3::ZERO, numbers.which_light)
-        else {
+        let of_slot = &stage.slots[slot as usize];
+        let Some((chosen, sample)) = sample_emission(stage.scene, of_slot, &numbers) else {
             return;
         };
-        let (light, of_slot) = (scene.light(chosen.light), &stage.slots[slot as usize]);
-        let bounds = scene.bounds();
-        let sample = light.sample_le(
-            of_slot.time,
-            numbers.position,
-            numbers.direction,
-            &of_slot.lambda,
-            &bounds,
-        );
-        let Some(sample) = sample else { return };
         let emission = f64::from(chosen.pmf) * sample.density.product();
         let has_delta_position = sample.density.position == LightDensity::Delta;
         let ray = sample.ray(of_slot.time);

@@ -4,12 +4,12 @@ use super::guide::EmissionGuide;
 use super::stored::Photon;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::integrator::adjoint::adjoint_correction;
+use crate::integrator::emission::sample_emission;
 use crate::integrator::lane::Lane;
 use crate::integrator::numbers::EmissionNumbers;
 use crate::integrator::path::{LAST_SURVIVAL, LAST_SURVIVAL_DEPTH};
 use crate::integrator::stage::{Estimator, Stage, Vertex};
 use crate::material::{Density, TransportMode};
-use crate::math::Vec3;
 use crate::sampling::SampleStream;
 use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
@@ -73,22 +73,10 @@ impl Estimator for PhotonTracer<'_> {
     /// Draws a light by its power, and a ray from it.
     fn emit<'s>(&self, stage: &mut Stage<'_, 's, Self>, slot: u32, stream: SampleStream) {
         let (numbers, density) = self.aim(EmissionNumbers::draw(&stream));
-        let scene = stage.scene;
-        let Some(chosen) = scene
-            .emission_sampler()
-            .sample(Vec3::ZERO, Vec3::ZERO, numbers.which_light)
-        else {
+        let of_slot = &stage.slots[slot as usize];
+        let Some((chosen, sample)) = sample_emission(stage.scene, of_slot, &numbers) else {
             return;
         };
-        let of_slot = &stage.slots[slot as usize];
-        let sample = scene.light(chosen.light).sample_le(
-            of_slot.time,
-            numbers.position,
-            numbers.direction,
-            &of_slot.lambda,
-            &scene.bounds(),
-        );
-        let Some(sample) = sample else { return };
         let density = f64::from(chosen.pmf) * sample.density.product() * f64::from(density);
         let ray = sample.ray(of_slot.time);
         let lane = Lane {

@@ -10,7 +10,7 @@ use crate::accel::bvh::leaf::{Corners, LANES as TRIANGLES};
 macro_rules! with {
     ($($body:tt)*) => {{
         // SAFETY: `self` proves that the processor has AVX2 and FMA; what is loaded or stored is a reference to as much.
-        #[allow(unused_unsafe)]
+        #[allow(unused_unsafe, reason = "an intrinsic without pointers is safe where its feature is known")]
         unsafe { $($body)* }
     }};
 }
