@@ -4,7 +4,7 @@
 //! transforms are matrices, materials and lights are names with parameters already checked for type and range. The scene builder
 //! turns a description into things that rays can meet.
 //!
-//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]). Lucerna's extensions to pbrt-v4:
+//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]); meshes in OBJ ([`obj`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -21,6 +21,7 @@ mod integrator;
 mod kinds;
 mod light;
 mod material;
+pub mod obj;
 pub mod pbrt;
 pub mod ply;
 pub mod rgl;

@@ -5,6 +5,7 @@ mod files;
 mod lights;
 mod materials;
 mod mutations;
+mod obj;
 mod options;
 mod ply;
 mod tables;
