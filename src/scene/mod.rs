@@ -7,6 +7,7 @@ mod lights;
 mod materials;
 mod shapes;
 mod spectra;
+mod tessellate;
 mod textures;
 mod view;
 

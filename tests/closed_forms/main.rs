@@ -14,6 +14,7 @@ mod interfaces;
 mod irradiance;
 mod lights;
 mod motion;
+mod shapes;
 mod wavelengths;
 
 use common::effort;

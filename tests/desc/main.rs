@@ -8,6 +8,7 @@ mod mutations;
 mod obj;
 mod options;
 mod ply;
+mod shapes;
 mod tables;
 mod world;
 

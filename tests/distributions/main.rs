@@ -15,6 +15,7 @@ mod light_samplers;
 mod lights;
 mod measured;
 mod narrow;
+mod shapes;
 mod textured;
 
 use glam::Vec2;
