@@ -50,7 +50,9 @@ pub use material::{
     SpectrumDesc, SpectrumValue,
 };
 pub use rgl::{MeasuredDesc, Tensor};
-pub use shape::{DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
+pub use shape::{
+    CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,
+};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
