@@ -98,6 +98,7 @@ impl MaterialCompiler<'_, '_> {
             MaterialKind::Measured(desc) => {
                 Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
             }
+            MaterialKind::Interface => Material::Interface,
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),

@@ -3,11 +3,13 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use super::media;
 use super::shapes::animated;
 use crate::camera::{Camera, CameraSpec, Projection, RasterDomain};
 use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
+use crate::medium::MediumId;
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{ColorMode, ColorSpace, Outside, SampledSpectrum, Spectrum, Wavelengths, sensor_curves};
 
@@ -18,6 +20,8 @@ pub struct View {
     pub name: String,
     /// Where from.
     pub camera: Camera,
+    /// What the camera stands in; `None` is the vacuum.
+    pub medium: Option<MediumId>,
     /// Pixels of the whole picture.
     pub resolution: [u32; 2],
     /// The pixels that are rendered.
@@ -85,6 +89,7 @@ impl View {
         Ok(Self {
             name: view.name.clone(),
             camera: Camera::new(&camera_spec(desc, view, resolution).map_err(problem)?),
+            medium: view.camera.medium.map(media::id),
             resolution,
             crop,
             filter,

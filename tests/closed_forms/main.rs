@@ -13,6 +13,7 @@ mod enclosures;
 mod interfaces;
 mod irradiance;
 mod lights;
+mod media;
 mod motion;
 mod wavelengths;
 

@@ -4,6 +4,7 @@ mod bad_input;
 mod files;
 mod lights;
 mod materials;
+mod media;
 mod mutations;
 mod options;
 mod ply;

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::files::Context;
-use super::options::Options;
+use super::options::{Options, Surroundings};
 use super::params::Param;
 use super::reader::ParamReader;
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
-use super::{light, material, shape, texture};
-use crate::desc::{ColorSpace, MotionDesc, TextureClass, Textured};
+use super::{light, material, medium, shape, texture};
+use crate::desc::{ColorSpace, MediumInterfaceDesc, MotionDesc, TextureClass, Textured};
 use crate::error::Span;
 
 pub(super) use super::options::OptionKind;
@@ -66,9 +66,12 @@ impl Builder {
             let world_from_camera = self.state.ctm.inverse();
             self.coordinate_systems.insert("camera".to_owned(), world_from_camera);
         }
-        let ctm = self.state.ctm;
+        let around = Surroundings {
+            ctm: self.state.ctm,
+            medium: self.state.media.exterior,
+        };
         self.options
-            .read(&mut self.context, kind, (name, name_span), params, span, ctm);
+            .read(&mut self.context, kind, (name, name_span), params, span, around);
     }
 
     pub fn transform_times(&mut self, start: f64, end: f64, span: Span) {
@@ -217,6 +220,15 @@ impl Builder {
         }
     }
 
+    /// `MediumInterface`: the names of the media inside and outside of the shapes to come; the empty name is the vacuum.
+    pub fn medium_interface(&mut self, interior: (String, Span), exterior: (String, Span)) {
+        let media = &mut self.world.media;
+        self.state.media = MediumInterfaceDesc {
+            interior: media.named(interior.0, interior.1),
+            exterior: media.named(exterior.0, exterior.1),
+        };
+    }
+
     /// A directive with a type and parameters inside the world.
     pub fn entity(&mut self, directive: &str, name: String, name_span: Span, params: Vec<Param>, span: Span) {
         if directive != "Attribute" && directive != "MakeNamedMedium" && !self.expect_world(directive, span) {
@@ -230,10 +242,7 @@ impl Builder {
             "AreaLightSource" => ("area light", Arc::clone(&defaults.light)),
             "Shape" => ("shape", Arc::clone(&defaults.shape)),
             "Attribute" => return self.set_defaults(&name, name_span, params),
-            _ => {
-                let report = &mut self.context.report;
-                return report.unsupported(span, "participating media are not supported yet", "it is ignored");
-            }
+            _ => ("medium", Arc::clone(&defaults.medium)),
         };
         let reader = ParamReader::new(&mut self.context, class, &name, name_span, params, &defaults);
         match directive {
@@ -248,6 +257,11 @@ impl Builder {
                 }
             }
             "LightSource" => self.world.lights.extend(light::read(reader, &name, self.state.ctm)),
+            "MakeNamedMedium" => {
+                if let Some(problem) = self.world.media.define(medium::read(reader, name)) {
+                    self.context.report.error(name_span, problem);
+                }
+            }
             "AreaLightSource" => self.state.area_light = light::read_area(reader, &name).map(Arc::new),
             _ => {
                 if let Some((kind, alpha)) = shape::read(reader, &name, &mut self.world.meshes) {
@@ -309,6 +323,7 @@ impl Builder {
             world_from_object: self.state.ctm,
             reverse_orientation: self.state.reverse_orientation,
             material: self.state.material,
+            media: self.state.media,
             alpha,
             area_light,
         });
@@ -321,7 +336,7 @@ impl Builder {
             "light" => ("light", &mut defaults.light),
             "material" => ("material", &mut defaults.material),
             "texture" => ("texture", &mut defaults.texture),
-            "medium" => return,
+            "medium" => ("medium", &mut defaults.medium),
             _ => {
                 let known = ["shape", "light", "material", "medium", "texture"];
                 let message = format!("unknown target `{target}` of `Attribute`");

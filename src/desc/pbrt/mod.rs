@@ -17,6 +17,7 @@ mod input;
 mod integrator;
 mod light;
 mod material;
+mod medium;
 mod options;
 mod params;
 mod reader;

@@ -124,6 +124,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let mut stage = Stage {
             scene: self.scene,
             view: self.view,
+            estimator: self.estimator,
             mode,
             depth,
             slots: &mut self.slots,
@@ -133,6 +134,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             landed: &mut self.landed,
             pending: &mut self.pending,
             spare: &mut self.spare,
+            passed: Batch::default(),
             next: Batch::default(),
         };
         stage.start_batch(next);
@@ -141,11 +143,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// Finds what the ray of each lane hits.
     fn trace(&mut self, batch: &Batch<E::State>) {
-        let kind = if batch.depth == 0 && batch.mode == TransportMode::Radiance {
-            RayKind::Camera
-        } else {
-            RayKind::Bounce
-        };
+        let kind = batch.kind;
         let rays = batch.rays.packets();
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
@@ -195,7 +193,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             }
             stage.limit_shadows(&mut stats);
         }
-        stage.finish_batch();
+        stage.finish();
         stage.flush_shadows(&mut stats);
         (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
     }
