@@ -158,6 +158,6 @@ fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Resul
         aperture: camera.aperture,
         measure: view.film.measure,
         shutter: camera.shutter.map(|time| (time - start) / (end - start)),
-        world_from_camera: animated(&camera.world_from_camera)?,
+        world_from_camera: animated(&camera.world_from_camera())?,
     })
 }

@@ -10,6 +10,7 @@ mod options;
 mod ply;
 mod tables;
 mod world;
+mod written;
 
 use std::path::{Path, PathBuf};
 

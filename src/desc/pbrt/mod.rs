@@ -33,6 +33,7 @@ mod texture_names;
 mod textured;
 mod tokens;
 mod world;
+mod write;
 
 use std::path::Path;
 
@@ -42,6 +43,8 @@ use builder::Builder;
 use directives::{Next, execute};
 use files::Context;
 use input::Input;
+
+pub use write::write;
 
 /// Reads a pbrt-v4 scene file.
 ///
