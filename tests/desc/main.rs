@@ -8,6 +8,7 @@ mod mutations;
 mod options;
 mod ply;
 mod tables;
+mod v3;
 mod world;
 
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@ use super::params::Param;
 use super::reader::ParamReader;
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
-use super::{light, material, shape, texture};
+use super::{light, material, shape, texture, v3};
 use crate::desc::{ColorSpace, MotionDesc, TextureClass, Textured};
 use crate::error::Span;
 
@@ -58,17 +58,19 @@ impl Builder {
     }
 
     /// `Camera`, `Film` and the like.
-    pub fn option(&mut self, kind: OptionKind, name: &str, name_span: Span, params: Vec<Param>, span: Span) {
+    pub fn option(&mut self, kind: OptionKind, mut name: String, name_span: Span, mut params: Vec<Param>, span: Span) {
         if !self.expect_options(kind.directive(), span) {
             return;
         }
+        let report = &mut self.context.report;
+        v3::translate(report, kind.directive(), &mut name, name_span, &mut params);
         if kind == OptionKind::Camera {
             let world_from_camera = self.state.ctm.inverse();
             self.coordinate_systems.insert("camera".to_owned(), world_from_camera);
         }
         let ctm = self.state.ctm;
         self.options
-            .read(&mut self.context, kind, (name, name_span), params, span, ctm);
+            .read(&mut self.context, kind, (&name, name_span), params, span, ctm);
     }
 
     pub fn transform_times(&mut self, start: f64, end: f64, span: Span) {
@@ -218,8 +220,12 @@ impl Builder {
     }
 
     /// A directive with a type and parameters inside the world.
-    pub fn entity(&mut self, directive: &str, name: String, name_span: Span, params: Vec<Param>, span: Span) {
+    pub fn entity(&mut self, directive: &str, mut name: String, name_span: Span, mut params: Vec<Param>, span: Span) {
         if directive != "Attribute" && directive != "MakeNamedMedium" && !self.expect_world(directive, span) {
+            return;
+        }
+        let report = &mut self.context.report;
+        if !v3::translate(report, directive, &mut name, name_span, &mut params) {
             return;
         }
         let defaults = &self.state.defaults;
@@ -243,8 +249,11 @@ impl Builder {
             }
             "MakeNamedMaterial" => {
                 let material = material::read_named(reader, &mut self.world.materials);
-                if let Some(problem) = self.world.materials.define(name, name_span, material) {
-                    self.context.report.error(name_span, problem);
+                if self.world.materials.is_defined(&name) && !self.redefine(name_span) {
+                    let message = format!("there is a named material `{name}` already");
+                    self.context.report.error(name_span, message);
+                } else {
+                    self.world.materials.define(name, name_span, material);
                 }
             }
             "LightSource" => self.world.lights.extend(light::read(reader, &name, self.state.ctm)),
@@ -262,22 +271,25 @@ impl Builder {
         &mut self,
         (name, name_span): (String, Span),
         (class, class_span): (&str, Span),
-        (kind, kind_span): (&str, Span),
-        params: Vec<Param>,
+        (mut kind, kind_span): (String, Span),
+        mut params: Vec<Param>,
         span: Span,
     ) {
         if !self.expect_world("Texture", span) {
             return;
         }
+        let report = &mut self.context.report;
+        v3::translate(report, "Texture", &mut kind, kind_span, &mut params);
         let class = match class {
             "float" => TextureClass::Float,
             "spectrum" => TextureClass::Spectrum,
+            "color" if report.is_old() => TextureClass::Spectrum,
             _ => {
                 let message = format!("a texture is of the class `float` or `spectrum`, not `{class}`");
                 return self.context.report.error(class_span, message);
             }
         };
-        if self.context.textures.is_defined(class, &name) {
+        if self.context.textures.is_defined(class, &name) && !self.redefine(name_span) {
             let message = format!("there is a {} texture `{name}` already", class.name());
             return self.context.report.error(name_span, message);
         }
@@ -287,8 +299,21 @@ impl Builder {
         }
         let defaults = Arc::clone(&self.state.defaults.texture);
         let what = format!("{} texture", class.name());
-        let reader = ParamReader::new(&mut self.context, &what, kind, kind_span, params, &defaults);
-        texture::read(reader, name, class, kind, self.state.ctm.start);
+        let reader = ParamReader::new(&mut self.context, &what, &kind, kind_span, params, &defaults);
+        texture::read(reader, name, class, &kind, self.state.ctm.start);
+    }
+
+    /// Whether a name may get another meaning, as in pbrt-v3.
+    fn redefine(&mut self, span: Span) -> bool {
+        let report = &mut self.context.report;
+        let old = report.is_old();
+        if old {
+            report.translated(
+                span,
+                "this name is defined a second time: from here on it means this, as in pbrt-v3",
+            );
+        }
+        old
     }
 
     fn shape(&mut self, kind: shape::RawKind, alpha: Textured<f32>, span: Span) {

@@ -139,6 +139,12 @@ pub(super) const DEFAULT_FILTER: FilterDesc = FilterDesc {
     radius: [1.5, 1.5],
 };
 
+/// The same in pbrt-v3.
+pub(super) const OLD_DEFAULT_FILTER: FilterDesc = FilterDesc {
+    kind: FilterKind::Box,
+    radius: [0.5, 0.5],
+};
+
 /// Reads a pixel filter; one of another type becomes the default.
 pub(super) fn read_filter(mut reader: ParamReader<'_>, kind: &str) -> FilterDesc {
     const KNOWN: [&str; 6] = ["box", "triangle", "gaussian", "mitchell", "sinc", "blackmanharris"];

@@ -13,7 +13,7 @@ use crate::desc::{
 use crate::error::Span;
 use crate::image_io::Encoding;
 
-const LATER: [&str; 2] = ["hair", "subsurface"];
+const LATER: [&str; 1] = ["hair"];
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
 pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> Option<MaterialDesc> {
@@ -79,6 +79,11 @@ fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<Materi
         reader.report().warning(span, message);
         reader.finish();
         return None;
+    }
+    if kind == "subsurface" {
+        let message = "the material `subsurface` is not supported: light does not travel under surfaces here";
+        reader.report().unsupported(span, message, "a diffuse one stands in");
+        return Some(default_material(span));
     }
     let known = MATERIALS.each_ref().map(|entry| entry.name);
     let classes = (&known[..], &LATER[..]);
