@@ -20,7 +20,7 @@
 //!   The film position then chooses o, with p(o) = 1 / (area of the pixel).
 
 use super::Camera;
-use crate::math::{Vec2, Vec3};
+use crate::math::{DAffine3, Vec2, Vec3};
 use crate::sampling::{AreaPdf, SolidAnglePdf};
 
 use super::pose::Pose;
@@ -127,6 +127,11 @@ impl Camera {
     /// Whether it stays where it is.
     pub fn is_static(&self) -> bool {
         self.world_from_camera.is_static()
+    }
+
+    /// Where the world is in the camera's space, at a scene time.
+    pub fn camera_from_world(&self, time: f32) -> DAffine3 {
+        self.with_pose(time, |pose| pose.camera_from_world)
     }
 
     /// The scene time at which the shutter has been open for the share `u` of its time (see [`super::CameraSample::time`]).

@@ -111,7 +111,12 @@ impl Camera {
     /// The ray of a sample, with a direction of unit length.
     #[inline]
     pub fn sample_ray(&self, sample: &CameraSample) -> Ray {
-        let time = self.scene_time(sample.time);
+        self.sample_ray_at(sample, self.scene_time(sample.time))
+    }
+
+    /// The same at a scene time, whatever the time of the sample.
+    #[inline]
+    pub fn sample_ray_at(&self, sample: &CameraSample, time: f32) -> Ray {
         let (origin, direction) = self.local_ray(sample);
         // On to the near plane (`direction` has the depth 1).
         let origin = origin + direction * self.near_clip;

@@ -55,8 +55,8 @@ pub use texture::{
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
 pub use view::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,
-    SamplerDesc, SensorDesc, ViewDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
+    MeasureDesc, PixelRect, SamplerDesc, SensorDesc, SpectralBins, ViewDesc,
 };
 
 /// A whole scene, as its file describes it.

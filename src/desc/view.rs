@@ -119,6 +119,8 @@ pub struct FilmDesc {
     pub color_space: ColorSpace,
     /// What of radiance a pixel is.
     pub measure: MeasureDesc,
+    /// What is kept of a pixel beside its colour.
+    pub kind: FilmKind,
     /// The `Film` directive; the whole file's first byte if there is none.
     pub span: Span,
 }
@@ -127,6 +129,53 @@ impl FilmDesc {
     /// What the sensor multiplies radiance by: `exposure_time * iso / 100`, as in pbrt-v4. It is 1 by default.
     pub fn imaging_ratio(&self) -> f64 {
         self.exposure_time * self.iso / 100.0
+    }
+}
+
+/// What a film keeps of a pixel beside its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FilmKind {
+    /// Nothing.
+    #[default]
+    Rgb,
+    /// The surfaces that it sees first: positions and normals in this space, and more. See [`crate::film::GBUFFER_CHANNELS`].
+    GBuffer(GBufferSpace),
+    /// Radiance by wavelength.
+    Spectral(SpectralBins),
+}
+
+/// The space of positions and normals in a G-buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GBufferSpace {
+    /// That of the camera, which looks along +z.
+    #[default]
+    Camera,
+    /// That of the scene.
+    World,
+}
+
+/// Parts of equal width of a range of wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralBins {
+    /// The shortest and the longest wavelength, in nm, within 360 to 830.
+    pub range: [f32; 2],
+    /// How many parts it has, at least 1.
+    pub count: u32,
+}
+
+impl SpectralBins {
+    /// The part that a wavelength, in nm, is in: the upper one at an edge. `None` outside of the range; its end belongs to the last.
+    #[inline]
+    pub fn index(&self, nm: f32) -> Option<usize> {
+        let [start, end] = self.range;
+        let part = (nm - start) / (end - start) * self.count as f32;
+        (nm >= start && nm <= end).then(|| (part as usize).min(self.count as usize - 1))
+    }
+
+    /// The wavelength in the middle of a part, in nm.
+    pub fn center(&self, index: u32) -> f64 {
+        let [start, end] = self.range.map(f64::from);
+        start + (f64::from(index) + 0.5) / f64::from(self.count) * (end - start)
     }
 }
 

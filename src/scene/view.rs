@@ -3,11 +3,13 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
+use super::Scene;
 use super::shapes::animated;
 use crate::camera::{Camera, CameraSpec, Projection, RasterDomain};
-use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
+use crate::desc::{CameraKind, FilmDesc, FilmKind, GBufferSpace, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
+use crate::math::{DAffine3, Vec3};
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{ColorMode, ColorSpace, Outside, SampledSpectrum, Spectrum, Wavelengths, sensor_curves};
 
@@ -34,6 +36,8 @@ pub struct View {
     pub samples: Range<u32>,
     /// The output that the scene names.
     pub filename: Option<PathBuf>,
+    /// What the film keeps beside colours.
+    pub film_kind: FilmKind,
 }
 
 /// What a command line changes of a view.
@@ -93,6 +97,7 @@ impl View {
             sampler: Sampler::new(kind, overrides.seed, spp),
             samples: overrides.sample.map_or(0..spp, |sample| sample..sample + 1),
             filename: view.film.filename.clone(),
+            film_kind: view.film.kind,
         })
     }
 
@@ -117,6 +122,22 @@ impl View {
     /// An empty film for it.
     pub fn film(&self) -> Film {
         Film::new(self.resolution, self.crop)
+    }
+
+    /// `film`, one for this view, with what it is to keep of `scene` beside colours.
+    pub fn with_layers(&self, film: Film, scene: &Scene) -> Film {
+        let corners = scene.bounds().corners().map(Vec3::as_dvec3);
+        let at = |time: f32| match self.film_kind {
+            FilmKind::GBuffer(GBufferSpace::Camera) => self.camera.camera_from_world(time),
+            _ => DAffine3::IDENTITY,
+        };
+        // Twice as far as at some times, for what moves in between.
+        let reach = [0.0, 0.25, 0.5, 0.75, 1.0]
+            .map(at)
+            .iter()
+            .flat_map(|transform| corners.map(|corner| 2.0 * transform.transform_point3(corner).abs().max_element()))
+            .fold(0.0, f64::max);
+        film.of_kind(self.film_kind, reach)
     }
 }
 

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc,
-    IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect, SAMPLERS, SamplerKind,
-    SensorDesc, SpectrumValue, Strategy, Termination,
+    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilmKind, FilterKind, GBufferSpace, Heuristic,
+    IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect,
+    SAMPLERS, SamplerKind, SensorDesc, SpectralBins, SpectrumValue, Strategy, Termination,
 };
 use lucerna::sampling::Strata;
 
@@ -283,6 +283,19 @@ fn each_integrator_of_pbrt_has_one_that_stands_for_it() {
         );
         assert_eq!(scene.warnings.len(), warnings, "{text}");
     }
+}
+
+#[test]
+fn films_keep_what_they_are_asked_for() {
+    let of = |text: &str| scene(&format!("Film {text} WorldBegin")).views[0].film.kind;
+    assert_eq!(of("\"rgb\""), FilmKind::Rgb);
+    assert_eq!(of("\"gbuffer\""), FilmKind::GBuffer(GBufferSpace::Camera));
+    let world = of("\"gbuffer\" \"string coordinatesystem\" \"world\" \"float iso\" 200");
+    assert_eq!(world, FilmKind::GBuffer(GBufferSpace::World));
+    let bins = |range, count| FilmKind::Spectral(SpectralBins { range, count });
+    assert_eq!(of("\"spectral\""), bins([360.0, 830.0], 16));
+    let some = of("\"spectral\" \"integer nbuckets\" 3 \"float lambdamin\" 400 \"float lambdamax\" 700");
+    assert_eq!(some, bins([400.0, 700.0], 3));
 }
 
 #[test]

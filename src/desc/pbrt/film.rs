@@ -5,8 +5,12 @@ use std::path::PathBuf;
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
 use super::sensor;
-use crate::desc::{ColorSpace, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect, SensorDesc};
+use crate::desc::{
+    ColorSpace, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace, MeasureDesc, PixelRect, SensorDesc,
+    SpectralBins,
+};
 use crate::error::Span;
+use crate::spectrum::{LAMBDA_MAX, LAMBDA_MIN};
 
 /// The film of a file without one.
 pub(super) fn default_film(span: Span) -> FilmDesc {
@@ -21,17 +25,26 @@ pub(super) fn default_film(span: Span) -> FilmDesc {
         max_component: f64::INFINITY,
         color_space: ColorSpace::default(),
         measure: MeasureDesc::default(),
+        kind: FilmKind::default(),
         span,
     }
 }
 
+const KINDS: [&str; 3] = ["rgb", "gbuffer", "spectral"];
+
 /// Reads a film; one of another type becomes an RGB one. The exposure time is the camera's to say.
 pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
     let span = reader.span;
-    if kind != "rgb" {
-        let classes = (&["rgb"][..], &["gbuffer", "spectral"][..]);
-        unknown_type(reader.report(), "film", kind, span, classes, "an RGB film stands in");
-    }
+    let kind = match kind {
+        "gbuffer" => FilmKind::GBuffer(gbuffer_space(&mut reader)),
+        "spectral" => FilmKind::Spectral(spectral_bins(&mut reader)),
+        "rgb" => FilmKind::Rgb,
+        _ => {
+            let classes = (&KINDS[..], &[][..]);
+            unknown_type(reader.report(), "film", kind, span, classes, "an RGB film stands in");
+            FilmKind::Rgb
+        }
+    };
     let mut side = |name, default| {
         let valid = |v: i32| (1..=1 << 20).contains(&v);
         let value = reader.integer_in(name, default, valid, "between 1 and 1048576");
@@ -49,6 +62,7 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
         max_component: reader.positive("maxcomponentvalue", f64::INFINITY),
         color_space: reader.context.color_space,
         measure: measure(&mut reader),
+        kind,
         span,
     };
     reader.inert(&[
@@ -57,6 +71,40 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
     ]);
     reader.finish();
     film
+}
+
+fn gbuffer_space(reader: &mut ParamReader<'_>) -> GBufferSpace {
+    let Some((name, span)) = reader.string("coordinatesystem") else {
+        return GBufferSpace::Camera;
+    };
+    match name.as_str() {
+        "camera" => GBufferSpace::Camera,
+        "world" => GBufferSpace::World,
+        _ => {
+            let message = format!("a coordinate system is `camera` or `world`, not `{name}`");
+            let known = ["camera", "world"];
+            reader
+                .report()
+                .unknown(span, message, "it is that of the camera", &name, &known);
+            GBufferSpace::Camera
+        }
+    }
+}
+
+fn spectral_bins(reader: &mut ParamReader<'_>) -> SpectralBins {
+    let all = [LAMBDA_MIN, LAMBDA_MAX];
+    let valid = |v: f64| (f64::from(LAMBDA_MIN)..=f64::from(LAMBDA_MAX)).contains(&v);
+    let mut end = |name, default: f32| reader.float_in(name, default.into(), valid, "between 360 and 830 nm") as f32;
+    let range = [end("lambdamin", all[0]), end("lambdamax", all[1])];
+    let count = reader.integer_in("nbuckets", 16, |v| (1..=1024).contains(&v), "between 1 and 1024");
+    if range[0] >= range[1] {
+        let span = reader.span_of("lambdamax");
+        reader.report().error(span, "`lambdamax` must be more than `lambdamin`");
+    }
+    SpectralBins {
+        range: if range[0] < range[1] { range } else { all },
+        count: count.unsigned_abs(),
+    }
 }
 
 /// As in pbrt-v4, 0 is none. Below 1000 K nothing glows that could be white.

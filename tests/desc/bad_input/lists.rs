@@ -35,7 +35,7 @@ fn an_error_is_shown_with_its_line() {
 #[test]
 fn lenient_reading_turns_the_unknown_into_warnings() {
     let text = r#"
-        Film "gbuffer"
+        Film "gbufer"
         Sampler "new" Integrator "mlt" PixelFilter "new" Camera "spherical"
         ColorSpace "rec2021"
         WorldBegin

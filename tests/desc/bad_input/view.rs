@@ -47,7 +47,7 @@ fn cameras() {
 
 #[test]
 fn films_and_filters() {
-    let cases: [Case; 11] = [
+    let cases: [Case; 14] = [
         (
             "Film \"rgb\" \"integer xresolution\" @0 WorldBegin",
             "between 1 and",
@@ -93,7 +93,22 @@ fn films_and_filters() {
             "`radiance` or `irradiance`, not `flux`",
             "",
         ),
-        ("Film @\"gbuffer\" WorldBegin", "not supported yet", ""),
+        ("Film @\"gbufer\" WorldBegin", "unknown film", "`gbuffer`"),
+        (
+            "Film \"gbuffer\" \"string coordinatesystem\" @\"wolrd\" WorldBegin",
+            "`camera` or `world`, not `wolrd`",
+            "`world`",
+        ),
+        (
+            "Film \"spectral\" \"integer nbuckets\" @0 WorldBegin",
+            "between 1 and 1024",
+            "",
+        ),
+        (
+            "Film \"spectral\" @\"float lambdamax\" 360 WorldBegin",
+            "more than `lambdamin`",
+            "",
+        ),
         ("PixelFilter @\"gausian\" WorldBegin", "unknown filter", "`gaussian`"),
     ];
     cases.iter().for_each(check);
