@@ -45,8 +45,8 @@ pub use kinds::{
 };
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
-    SpectrumDesc, SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
+    ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
 pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
@@ -56,7 +56,7 @@ pub use texture::{
 };
 pub use view::{
     ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
-    MeasureDesc, PixelRect, SamplerDesc, SensorDesc, SpectralBins, ViewDesc,
+    LensSurface, MeasureDesc, PixelRect, RealisticDesc, SamplerDesc, SensorDesc, SpectralBins, StopShape, ViewDesc,
 };
 
 /// A whole scene, as its file describes it.

@@ -1,10 +1,12 @@
 //! Views: a camera with its film, filter and sampler.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::MotionDesc;
 use crate::error::Span;
-use crate::sampling::SamplerKind;
+use crate::image_io::Image;
+use crate::sampling::{SamplerKind, SphereMap};
 use crate::spectrum::ColorSpace;
 
 /// One picture to be taken of the scene.
@@ -63,7 +65,7 @@ pub enum ApertureDesc {
 }
 
 /// The projection of a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum CameraKind {
     /// Through a point.
     Perspective {
@@ -76,6 +78,52 @@ pub enum CameraKind {
     },
     /// Parallel: the screen window is in scene units.
     Orthographic,
+    /// All around from a point: by this map, whose pole is up and whose second axis is forward.
+    Spherical(SphereMap),
+    /// Through lenses; scene units are metres.
+    Realistic(Arc<RealisticDesc>),
+}
+
+/// The lenses of a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RealisticDesc {
+    /// From the scene to the film, at least one; one at most is the aperture stop, whose diameter is what is asked for.
+    pub surfaces: Vec<LensSurface>,
+    /// How far away what is sharp is from the film, in scene units; positive.
+    pub focus_distance: f64,
+    /// The shape of the stop's opening.
+    pub shape: StopShape,
+}
+
+/// A surface of a lens; lengths are in millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensSurface {
+    /// Of curvature, positive if it bulges towards the scene; 0 for the aperture stop.
+    pub radius: f64,
+    /// Along the axis to the next surface; of the last one, before focusing, to the film.
+    pub thickness: f64,
+    /// The index of refraction from here to the next surface; 0 or 1 for air.
+    pub eta: f64,
+    /// Of the opening; positive.
+    pub diameter: f64,
+}
+
+/// The shape of an aperture stop's opening; all let the same light through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum StopShape {
+    /// A disk.
+    #[default]
+    Round,
+    /// A disk that fades out towards its rim.
+    Gaussian,
+    /// Of half the diameter.
+    Square,
+    /// Regular.
+    Pentagon,
+    /// With five points.
+    Star,
+    /// How much passes, by place; finite, not negative, not black.
+    Image(Arc<Image>),
 }
 
 impl CameraDesc {
@@ -103,6 +151,8 @@ pub struct FilmDesc {
     pub resolution: [u32; 2],
     /// The part of it that is rendered.
     pub crop: CropDesc,
+    /// From corner to corner of the film, in millimetres, behind the lenses of a realistic camera; positive. Default 35.
+    pub diagonal: f64,
     /// The output file, as typed, if the scene names one.
     pub filename: Option<PathBuf>,
     /// Sensitivity; default 100; positive.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use super::Scene;
 use super::shapes::animated;
-use crate::camera::{Camera, CameraSpec, Projection, RasterDomain};
-use crate::desc::{CameraKind, FilmDesc, FilmKind, GBufferSpace, SceneDesc, SensorDesc, ViewDesc};
+use crate::camera::{Camera, CameraSpec, Projection, RasterDomain, Realistic, RealisticSpec};
+use crate::desc::{CameraKind, FilmDesc, FilmKind, GBufferSpace, MeasureDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
 use crate::math::{DAffine3, Vec3};
@@ -88,7 +88,7 @@ impl View {
         }
         Ok(Self {
             name: view.name.clone(),
-            camera: Camera::new(&camera_spec(desc, view, resolution).map_err(problem)?),
+            camera: camera(desc, view, resolution).map_err(problem)?,
             resolution,
             crop,
             filter,
@@ -159,21 +159,39 @@ fn sensor_spec(film: &FilmDesc) -> SensorSpec {
     }
 }
 
-fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<CameraSpec, String> {
+/// The camera of a view, or what is wrong with it.
+fn camera(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<Camera, String> {
     let camera = &view.camera;
     let [start, end] = desc.transform_times;
-    Ok(CameraSpec {
-        projection: match camera.kind {
-            CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
-            CameraKind::Orthographic => Projection::Orthographic,
-        },
+    let shutter = camera.shutter.map(|time| (time - start) / (end - start));
+    let world_from_camera = animated(&camera.world_from_camera)?;
+    let projection = match &camera.kind {
+        &CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
+        CameraKind::Orthographic => Projection::Orthographic,
+        CameraKind::Spherical(_) | CameraKind::Realistic(_) if view.film.measure == MeasureDesc::Irradiance => {
+            return Err("only a camera with a flat screen measures irradiance".to_owned());
+        }
+        CameraKind::Spherical(map) => {
+            return Ok(Camera::spherical(*map, resolution, shutter, &world_from_camera));
+        }
+        CameraKind::Realistic(lenses) => {
+            let spec = RealisticSpec {
+                desc: lenses,
+                film_diagonal: view.film.diagonal * 1e-3,
+                resolution,
+            };
+            return Ok(Camera::realistic(Realistic::new(&spec)?, shutter, &world_from_camera));
+        }
+    };
+    Ok(Camera::new(&CameraSpec {
+        projection,
         screen_window: camera.screen_window(resolution),
         resolution,
         lens_radius: camera.lens_radius,
         focal_distance: camera.focal_distance,
         aperture: camera.aperture,
         measure: view.film.measure,
-        shutter: camera.shutter.map(|time| (time - start) / (end - start)),
-        world_from_camera: animated(&camera.world_from_camera)?,
-    })
+        shutter,
+        world_from_camera,
+    }))
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod files;
+mod lenses;
 mod lights;
 mod materials;
 mod mutations;

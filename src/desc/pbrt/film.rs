@@ -17,6 +17,7 @@ pub(super) fn default_film(span: Span) -> FilmDesc {
     FilmDesc {
         resolution: [1280, 720],
         crop: CropDesc::Full,
+        diagonal: 35.0,
         filename: None,
         iso: 100.0,
         exposure_time: 1.0,
@@ -54,6 +55,7 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
     let film = FilmDesc {
         resolution,
         crop: crop(&mut reader, resolution),
+        diagonal: reader.positive("diagonal", 35.0),
         filename: reader.string("filename").map(|(name, _)| PathBuf::from(name)),
         iso: reader.positive("iso", 100.0),
         exposure_time: 1.0,
@@ -65,10 +67,7 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
         kind,
         span,
     };
-    reader.inert(&[
-        ("diagonal", "it matters to realistic cameras only"),
-        ("savefp16", "images are saved with 32 bits"),
-    ]);
+    reader.inert(&[("savefp16", "images are saved with 32 bits")]);
     reader.finish();
     film
 }

@@ -20,6 +20,7 @@ mod material;
 mod options;
 mod params;
 mod reader;
+mod realistic;
 mod report;
 mod sampler;
 mod sensor;

@@ -114,7 +114,7 @@ fn change_of_depth(
             film: film + offset,
             ..sample
         };
-        let ray = view.camera.sample_ray_at(&sample, slot.time);
+        let (ray, _) = view.camera.ray_at(&sample, slot.time)?;
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let n = si.ng.as_dvec3();
         let t = n.dot(si.p.as_dvec3() - origin) / n.dot(direction);

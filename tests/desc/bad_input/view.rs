@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn cameras() {
-    let cases: [Case; 8] = [
+    let cases: [Case; 11] = [
         (
             "Camera \"perspective\" \"float fov\" @[ 180 ] WorldBegin",
             "between 0 and 180",
@@ -35,7 +35,18 @@ fn cameras() {
             "expected `float`",
             "",
         ),
-        ("Camera @\"spherical\" WorldBegin", "not supported yet", ""),
+        ("Camera @\"spheric\" WorldBegin", "unknown camera", "`spherical`"),
+        (
+            "Camera \"spherical\" \"string mapping\" @\"latlong\" WorldBegin",
+            "`equalarea` or `equirectangular`, not `latlong`",
+            "",
+        ),
+        ("Camera @\"realistic\" WorldBegin", "no table of lenses", ""),
+        (
+            "Camera \"realistic\" \"string lensfile\" @\"nowhere.lens\" WorldBegin",
+            "cannot be read",
+            "",
+        ),
         (
             "Camera \"perspective\" \"string name\" \"a\"\nCamera \"perspective\" \"string name\" @\"a\" WorldBegin",
             "a view `a`",
