@@ -86,6 +86,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: CoatDesc,
     },
+    /// No surface at all, only a boundary between media.
+    Interface,
     /// Of two materials, one here and one there.
     Mix {
         /// The two. A mix does not contain itself.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::MotionDesc;
+use super::{MediumId, MotionDesc};
 use crate::error::Span;
 use crate::image_io::Image;
 use crate::sampling::{SamplerKind, SphereMap};
@@ -45,6 +45,8 @@ pub struct CameraDesc {
     pub aperture: ApertureDesc,
     /// When the shutter opens and closes, in the time of [`super::SceneDesc::transform_times`]; open < close.
     pub shutter: [f64; 2],
+    /// What it stands in; `None` is the vacuum.
+    pub medium: Option<MediumId>,
     /// The inverse of pbrt's current transform at the `Camera` directive.
     pub world_from_camera: MotionDesc,
 }

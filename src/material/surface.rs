@@ -71,6 +71,8 @@ pub enum Material {
         /// The coat.
         coat: Arc<Coat>,
     },
+    /// No surface, only a boundary between media, which a path passes without being scattered.
+    Interface,
     /// One of two materials, from point to point.
     Mix(Arc<MixMaterial>),
     /// By the parameters of artists.
@@ -178,12 +180,33 @@ impl Material {
             | Self::DiffuseTransmission { .. }
             | Self::Measured(_)
             | Self::Principled(_)
-            | Self::Hair(_) => false,
+            | Self::Hair(_)
+            | Self::Interface => false,
             Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => roughness.may_be_smooth(),
             Self::ThinDielectric { .. } => true,
             Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
             Self::Mix(mix) => mix.materials.iter().any(Self::may_have_delta),
             Self::Relief(relief) => relief.material.may_have_delta(),
+        }
+    }
+
+    /// Whether it may refract wavelengths differently, which ends all but one of a path's.
+    pub fn disperses(&self) -> bool {
+        match self {
+            Self::Dielectric { eta, .. } => !eta.is_constant_over_wavelengths(),
+            Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => {
+                !coat.eta.is_constant_over_wavelengths()
+            }
+            Self::Mix(mix) => mix.materials.iter().any(Self::disperses),
+            Self::Relief(relief) => relief.material.disperses(),
+            Self::Diffuse { .. }
+            | Self::DiffuseTransmission { .. }
+            | Self::Conductor { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Hair(_)
+            | Self::Interface
+            | Self::Principled(_)
+            | Self::Measured(_) => false,
         }
     }
 
@@ -196,6 +219,7 @@ impl Material {
             Self::Conductor { .. }
             | Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
+            | Self::Interface
             | Self::CoatedDiffuse { .. }
             | Self::CoatedConductor { .. }
             | Self::Principled(_) => false,
@@ -254,6 +278,8 @@ impl Material {
                 let lobe = lobe.with_multiple_scattering(*multiple_scattering);
                 (Lobe::Dielectric(lobe), is_anisotropic(facets))
             }
+            // Who does not know of media sees a sheet of nothing.
+            Self::Interface => (Lobe::ThinDielectric(ThinDielectric::new(SampledSpectrum::ONE)), false),
             Self::ThinDielectric { eta } => (Lobe::ThinDielectric(ThinDielectric::new(eta.sample(lambda))), false),
             Self::CoatedDiffuse { reflectance, coat } => {
                 let (boundary, anisotropic) = coat.boundary(si, lambda);

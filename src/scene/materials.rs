@@ -102,6 +102,7 @@ impl MaterialCompiler<'_, '_> {
                 Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
             }
             MaterialKind::Hair(desc) => Material::Hair(Arc::new(hair(desc, self.textures))),
+            MaterialKind::Interface => Material::Interface,
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),

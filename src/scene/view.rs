@@ -3,13 +3,14 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use super::Scene;
 use super::shapes::animated;
+use super::{Scene, media};
 use crate::camera::{Camera, CameraSpec, Projection, RasterDomain, Realistic, RealisticSpec};
 use crate::desc::{CameraKind, FilmDesc, FilmKind, GBufferSpace, MeasureDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
 use crate::math::{DAffine3, Vec3};
+use crate::medium::MediumId;
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{ColorMode, ColorSpace, Outside, SampledSpectrum, Spectrum, Wavelengths, sensor_curves};
 
@@ -20,6 +21,8 @@ pub struct View {
     pub name: String,
     /// Where from.
     pub camera: Camera,
+    /// What the camera stands in; `None` is the vacuum.
+    pub medium: Option<MediumId>,
     /// Pixels of the whole picture.
     pub resolution: [u32; 2],
     /// The pixels that are rendered.
@@ -89,6 +92,7 @@ impl View {
         Ok(Self {
             name: view.name.clone(),
             camera: camera(desc, view, resolution).map_err(problem)?,
+            medium: view.camera.medium.map(media::id),
             resolution,
             crop,
             filter,

@@ -14,6 +14,7 @@ mod interfaces;
 mod irradiance;
 mod layers;
 mod lights;
+mod media;
 mod motion;
 mod wavelengths;
 

@@ -5,6 +5,7 @@ mod files;
 mod lenses;
 mod lights;
 mod materials;
+mod media;
 mod mutations;
 mod options;
 mod ply;

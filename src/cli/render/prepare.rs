@@ -80,7 +80,11 @@ impl Job<'_> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
-        if let Some(missed) = self.integrator(&desc)?.blind_spot(&scene) {
+        let integrator = self.integrator(&desc)?;
+        if let Some(missing) = integrator.missing(&scene) {
+            return Err(Error::Usage(format!("{}: {missing}", path.display())));
+        }
+        if let Some(missed) = integrator.blind_spot(&scene) {
             reporter.say(&format!("warning: {missed}"));
         }
         if scene.lights().is_empty() {

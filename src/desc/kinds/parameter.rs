@@ -89,6 +89,11 @@ pub enum ParameterKind {
     Points(usize),
     /// The spectrum of a light: `rgb`, `spectrum` or `blackbody`; by default the colour space's illuminant.
     Emission,
+    /// A spectrum that is no emission of a light: `rgb`, `spectrum` or `blackbody`, 0 or more.
+    Spectrum {
+        /// If none is given, at all wavelengths.
+        default: f64,
+    },
     /// `float`: a power or an illuminance, which counts if it is positive; there is no default.
     Photometric,
     /// `string`: one of a few words.
@@ -231,7 +236,7 @@ impl ParameterKind {
             Self::Float { .. } | Self::Photometric => &["float"],
             Self::Vector(_) => &["vector3"],
             Self::Point(_) | Self::Points(_) => &["point3"],
-            Self::Emission => &["rgb", "spectrum", "blackbody"],
+            Self::Emission | Self::Spectrum { .. } => &["rgb", "spectrum", "blackbody"],
             Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::TwoMaterials => &["string"],
             Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
             Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
@@ -262,7 +267,7 @@ impl ParameterKind {
             Self::Inert(_) => "any; it has no effect".to_owned(),
             Self::File => "a file".to_owned(),
             Self::Points(count) => format!("{count} points"),
-            Self::Emission => "0 or more".to_owned(),
+            Self::Emission | Self::Spectrum { .. } => "0 or more".to_owned(),
             Self::Photometric => "positive".to_owned(),
             Self::Vector(_) | Self::Point(_) | Self::FloatTextured { .. } => "finite".to_owned(),
             Self::Value { .. } | Self::Textured { .. } => "finite; of a spectrum 0 or more".to_owned(),
@@ -276,6 +281,7 @@ impl ParameterKind {
             Self::Integer { default, .. } => default.to_string(),
             Self::Float { default, .. }
             | Self::Value { default }
+            | Self::Spectrum { default }
             | Self::Textured { default }
             | Self::FloatTextured { default }
             | Self::GlassIndex { default } => default.to_string(),

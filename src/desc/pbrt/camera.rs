@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::options::Surroundings;
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
 use super::realistic;
@@ -32,14 +33,18 @@ pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
         focal_distance: 1e6,
         aperture: ApertureDesc::Round,
         shutter: [0.0, 1.0],
+        medium: None,
         world_from_camera,
     }
 }
 
 /// Reads a camera; one of another type becomes a perspective one.
-pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_camera: MotionDesc) -> NamedCamera {
+pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings) -> NamedCamera {
     let span = reader.span;
-    let default = default_camera(world_from_camera);
+    let default = CameraDesc {
+        medium: around.medium,
+        ..default_camera(around.ctm.inverse())
+    };
     let kind = match kind {
         "perspective" => Some(CameraKind::Perspective {
             fov: reader.float_in("fov", 90.0, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees"),

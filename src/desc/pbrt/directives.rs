@@ -156,15 +156,12 @@ fn dispatch(builder: &mut Builder, lexer: &mut Lexer, word: &str, span: Span) ->
             }
         }
         "MediumInterface" => {
-            let inside = arguments(builder, lexer, span).string()?.0;
-            let mut outside = String::new();
+            let interior = arguments(builder, lexer, span).string()?;
+            let mut exterior = interior.clone();
             if lexer.peek().is_some_and(|t| t.kind == TokenKind::Quoted) {
-                outside = arguments(builder, lexer, span).string()?.0;
+                exterior = arguments(builder, lexer, span).string()?;
             }
-            if !inside.is_empty() || !outside.is_empty() {
-                let report = &mut builder.context.report;
-                report.unsupported(span, "participating media are not supported yet", "they are ignored");
-            }
+            builder.medium_interface(interior, exterior);
         }
         "Texture" => {
             let name = arguments(builder, lexer, span).string()?;

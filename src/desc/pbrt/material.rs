@@ -17,7 +17,7 @@ use crate::image_io::Encoding;
 const DEFAULT_EUMELANIN: f32 = 1.3;
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
-pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> Option<MaterialDesc> {
+pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> MaterialDesc {
     match reader.string("type") {
         Some((kind, span)) => read(reader, materials, &kind, Some(span)),
         None => {
@@ -26,19 +26,19 @@ pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials)
                 let message = "this material has no type: `\"string type\" \"diffuse\"`, for one";
                 reader.report().error(span, message);
             }
-            Some(default_material(reader.span))
+            default_material(reader.span)
         }
     }
 }
 
-/// Reads a material of type `kind`, which stands at `span` unless where the reader has it. `None`: no surface at all. What cannot
-/// be read becomes the default material.
+/// Reads a material of type `kind`, which stands at `span` unless where the reader has it. What cannot be
+/// read becomes the default material.
 pub(super) fn read(
     mut reader: ParamReader<'_>,
     materials: &mut Materials,
     kind: &str,
     span: Option<Span>,
-) -> Option<MaterialDesc> {
+) -> MaterialDesc {
     let span = span.unwrap_or(reader.span);
     let Some(entry) = MATERIALS.iter().find(|entry| entry.name == kind) else {
         return unknown(reader, kind, span);
@@ -47,12 +47,12 @@ pub(super) fn read(
     let can_have_relief = entry.has(kinds::DISPLACEMENT.name);
     let relief = if can_have_relief { relief(&mut reader) } else { None };
     reader.finish_by(entry);
-    kind.map(|kind| MaterialDesc {
+    MaterialDesc {
         name: None,
         kind,
         relief,
         span,
-    })
+    }
 }
 
 /// A normal map or a displacement; as in pbrt-v4 the former counts if both are given.
@@ -74,17 +74,20 @@ fn relief(reader: &mut ParamReader<'_>) -> Option<ReliefDesc> {
     Some(ReliefDesc::Normals(image))
 }
 
-fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<MaterialDesc> {
+fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> MaterialDesc {
     if matches!(kind, "" | "none") {
         let message = format!("the material `{kind}` is deprecated: it is taken for `interface`");
         reader.report().warning(span, message);
         reader.finish();
-        return None;
+        return MaterialDesc {
+            kind: MaterialKind::Interface,
+            ..default_material(span)
+        };
     }
     if kind == "subsurface" {
         let message = "the material `subsurface` is not supported: light does not travel under surfaces here";
         reader.report().unsupported(span, message, "a diffuse one stands in");
-        return Some(default_material(span));
+        return default_material(span);
     }
     let known = MATERIALS.each_ref().map(|entry| entry.name);
     let classes = (&known[..], &[][..]);
@@ -96,12 +99,12 @@ fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<Materi
         classes,
         "a diffuse one stands in",
     );
-    Some(default_material(span))
+    default_material(span)
 }
 
 /// The material of one of the kinds in [`MATERIALS`].
-fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str) -> Option<MaterialKind> {
-    Some(match kind {
+fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str) -> MaterialKind {
+    match kind {
         "diffuse" => MaterialKind::Diffuse {
             reflectance: reader.spectrum_textured_by(&kinds::REFLECTANCE),
             roughness: reader.float_textured_by(&kinds::DIFFUSE_ROUGHNESS),
@@ -140,8 +143,9 @@ fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str
             Some(desc) => MaterialKind::Measured(Arc::new(desc)),
             None => default_material(reader.span).kind,
         },
-        _ => return None,
-    })
+        "interface" => MaterialKind::Interface,
+        _ => default_material(reader.span).kind,
+    }
 }
 
 fn metal(reader: &mut ParamReader<'_>, eta: &'static Parameter, k: &'static Parameter) -> ConductorDesc {

@@ -6,6 +6,7 @@
 //!
 //! Beyond pbrt-v4, whatever is unknown, has the wrong type or is given twice is an error, many of them in one run.
 
+mod blocks;
 mod builder;
 mod camera;
 mod directives;
@@ -17,6 +18,7 @@ mod input;
 mod integrator;
 mod light;
 mod material;
+mod medium;
 mod options;
 mod params;
 mod reader;

@@ -8,7 +8,7 @@ use super::params::Param;
 use super::reader::ParamReader;
 use super::report::Report;
 use super::sampler;
-use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MotionDesc, SamplerDesc, ViewDesc};
+use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MediumId, MotionDesc, SamplerDesc, ViewDesc};
 use crate::error::Span;
 
 /// A directive that is allowed only before `WorldBegin` and has a type and parameters.
@@ -46,6 +46,15 @@ impl OptionKind {
     }
 }
 
+/// What a camera is placed by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surroundings {
+    /// The current transform.
+    pub ctm: MotionDesc,
+    /// What fills the space around it.
+    pub medium: Option<MediumId>,
+}
+
 /// The options read so far.
 #[derive(Debug)]
 pub(super) struct Options {
@@ -71,7 +80,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Reads the option `kind` of type `name`; the current transform is `ctm`.
+    /// Reads the option `kind` of type `name`.
     pub fn read(
         &mut self,
         context: &mut Context,
@@ -79,7 +88,7 @@ impl Options {
         (name, name_span): (&str, Span),
         params: Vec<Param>,
         span: Span,
-        ctm: MotionDesc,
+        around: Surroundings,
     ) {
         let class = kind.directive().to_lowercase();
         let reader = ParamReader::new(context, &class, name, name_span, params, &[]);
@@ -90,7 +99,7 @@ impl Options {
                 false
             }
             OptionKind::Camera => {
-                self.cameras.push(camera::read(reader, name, ctm.inverse()));
+                self.cameras.push(camera::read(reader, name, around));
                 false
             }
             OptionKind::Film => self.film.replace(film::read_film(reader, name)).is_some(),

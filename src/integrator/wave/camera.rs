@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::Wave;
+use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE};
 use crate::geometry::{LANES, Ray, RayCone};
@@ -44,6 +45,7 @@ impl<E: Estimator> Wave<'_, E> {
         self.slots.clear();
         let mut batch = self.spare.pop().unwrap_or_default();
         batch.restart(TransportMode::Radiance, 0);
+        batch.kind = RayKind::Camera;
         for sample in samples {
             for y in (all.y0..all.y1).step_by(BLOCK[1] as usize) {
                 for x in (all.x0..all.x1).step_by(BLOCK[0] as usize) {

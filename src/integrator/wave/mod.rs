@@ -129,6 +129,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let mut stage = Stage {
             scene: self.scene,
             view: self.view,
+            estimator: self.estimator,
             mode,
             depth,
             slots: &mut self.slots,
@@ -138,6 +139,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             landed: &mut self.landed,
             pending: &mut self.pending,
             spare: &mut self.spare,
+            passed: Batch::default(),
             next: Batch::default(),
         };
         stage.start_batch(next);
@@ -146,11 +148,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// Finds what the ray of each lane hits.
     fn trace(&mut self, batch: &Batch<E::State>) {
-        let kind = if batch.depth == 0 && batch.mode == TransportMode::Radiance {
-            RayKind::Camera
-        } else {
-            RayKind::Bounce
-        };
+        let kind = batch.kind;
         let rays = batch.rays.packets();
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
@@ -191,7 +189,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     cone = cone.after(si.p.distance(ray.origin));
                     si.footprint = cone.width;
                     surface = Some(&si);
-                    if is_first {
+                    if is_first && !scene.is_interface(si.hit.geometry) {
                         let slot = &stage.slots[lane.slot as usize];
                         first_hits.set(lane.slot, surface_sample((scene, view), space, slot, &lane.stream, &si));
                     }
@@ -207,7 +205,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             }
             stage.limit_shadows(&mut stats);
         }
-        stage.finish_batch();
+        stage.finish();
         stage.flush_shadows(&mut stats);
         (self.hits, self.stats, self.surfaces, self.first_hits) = (hits, stats, surfaces, first_hits);
     }

@@ -161,10 +161,10 @@ impl Hair {
         let view = self.view(wo);
         let probabilities = view.probabilities();
         let (mut f, mut pdf) = (SampledSpectrum::ZERO, 0.0);
-        for p in 0..WAYS {
+        for (p, (&attenuation, probability)) in view.attenuation.iter().zip(probabilities).enumerate() {
             let spread = self.spread(p, &view, wi);
-            f += view.attenuation[p] * spread;
-            pdf += probabilities[p] * spread;
+            f += attenuation * spread;
+            pdf += probability * spread;
         }
         Some(LocalValue {
             f: f * (1.0 / wi.z.abs()),

@@ -40,7 +40,7 @@ fn lenient_reading_turns_the_unknown_into_warnings() {
         ColorSpace "rec2021"
         WorldBegin
         Texture "a" "spectrum" "ptex" "string filename" "x"
-        MakeNamedMedium "m" "string type" "homogeneous" MediumInterface "m"
+        MakeNamedMedium "m" "string type" "cloud" MediumInterface "m"
         Material "diffuse" "texture reflectance" "b"
         Material "subsurface" "float thickness" 3
         Shape "sphere" "float what" 3 "float zmin" 0
