@@ -244,7 +244,7 @@ fn what_cannot_change_the_image_is_a_warning() {
         "#,
     );
     let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
-    assert_eq!(lines, [2, 3, 3, 4, 4, 5, 6, 8, 8, 10]);
+    assert_eq!(lines, [2, 3, 4, 4, 5, 6, 8, 8, 10]);
     assert!(scene.warnings[0].message.contains("--backend"));
     assert_eq!(scene.views[0].sampler.kind, SamplerKind::Halton);
 }
