@@ -402,3 +402,23 @@ fn a_written_scene_gives_the_same_bits() {
         assert!(picture.iter().any(|&v| v > 0.0) && picture == other);
     }
 }
+
+/// A scene of pbrt-v3 is the same picture as what pbrt-v4 has for it.
+#[test]
+fn the_cornell_box_of_pbrt_v3_is_the_same_picture() {
+    let Some(scenes) = common::shared("scenes") else { return };
+    let [old, new] = ["scene.pbrt", "scene-v4.pbrt"].map(|name| {
+        let desc = load(&scenes.join("cornell-box").join(name), &ParseOptions::default());
+        let built = Built::new(desc.expect("a scene"), Backend::default(), ColorMode::Spectral);
+        let overrides = ViewOverrides {
+            resolution: Some([48, 48]),
+            spp: Some(4),
+            ..ViewOverrides::default()
+        };
+        // The files ask for other depths.
+        let integrator = Integrator::from_desc(&built.desc.integrator).with_max_depth(Some(5));
+        built.picture_with(&built.view(0, &overrides), integrator).0
+    });
+    assert_eq!(old, new);
+    assert!(old.iter().any(|&value| value > 1.0));
+}

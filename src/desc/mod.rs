@@ -48,8 +48,8 @@ pub use kinds::{
 };
 pub use light::{AreaLightDesc, LightDesc, LightKind};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
-    SpectrumDesc, SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
+    ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
 pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
@@ -59,8 +59,8 @@ pub use texture::{
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
 pub use view::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,
-    SamplerDesc, SensorDesc, ViewDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
+    LensSurface, MeasureDesc, PixelRect, RealisticDesc, SamplerDesc, SensorDesc, SpectralBins, StopShape, ViewDesc,
 };
 
 /// A whole scene, as its file describes it.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe, Measured,
     MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
     ThinDielectric,
 };
@@ -81,6 +81,8 @@ pub enum Material {
     Relief(Arc<Relief>),
     /// By measurements.
     Measured(Arc<MeasuredTables>),
+    /// A fibre.
+    Hair(Arc<HairMaterial>),
 }
 
 /// A dielectric coat and what is under it.
@@ -178,6 +180,7 @@ impl Material {
             | Self::DiffuseTransmission { .. }
             | Self::Measured(_)
             | Self::Principled(_)
+            | Self::Hair(_)
             | Self::Interface => false,
             Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => roughness.may_be_smooth(),
             Self::ThinDielectric { .. } => true,
@@ -200,6 +203,7 @@ impl Material {
             | Self::DiffuseTransmission { .. }
             | Self::Conductor { .. }
             | Self::ThinDielectric { .. }
+            | Self::Hair(_)
             | Self::Interface
             | Self::Principled(_)
             | Self::Measured(_) => false,
@@ -209,7 +213,7 @@ impl Material {
     /// Whether no point of it can [be specular](Bsdf::is_specular), whatever its textures say, nor has delta lobes.
     pub fn is_never_specular(&self) -> bool {
         match self {
-            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) => true,
+            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Hair(_) => true,
             Self::Mix(mix) => mix.materials.iter().all(Self::is_never_specular),
             Self::Relief(relief) => relief.material.is_never_specular(),
             Self::Conductor { .. }
@@ -303,6 +307,7 @@ impl Material {
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
             Self::Measured(tables) => (Lobe::Measured(Measured::new(tables, lambda)), true),
+            Self::Hair(hair) => (Lobe::Hair(hair.at(si, lambda)), true),
         }
     }
 

@@ -21,6 +21,11 @@ impl SpectrumCompiler {
         spectrum(&desc.value, Spectrum::rgb_unbounded, Outside::Constant).compile(self.mode, SpectrumRole::Reflectance)
     }
 
+    /// A coefficient of absorption that is known as linear sRGB.
+    pub fn absorption_of_rgb(self, rgb: [f32; 3]) -> CompiledSpectrum {
+        Spectrum::rgb_unbounded(rgb).compile(self.mode, SpectrumRole::Reflectance)
+    }
+
     /// The index of refraction of a dielectric.
     pub fn glass_index(self, desc: &SpectrumDesc) -> CompiledSpectrum {
         spectrum(&desc.value, Spectrum::rgb_unbounded, Outside::Constant).compile(self.mode, SpectrumRole::Ior)

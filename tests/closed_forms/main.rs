@@ -12,6 +12,7 @@ mod emission;
 mod enclosures;
 mod interfaces;
 mod irradiance;
+mod layers;
 mod lights;
 mod media;
 mod motion;

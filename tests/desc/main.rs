@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod files;
+mod lenses;
 mod lights;
 mod materials;
 mod media;
@@ -9,6 +10,7 @@ mod mutations;
 mod options;
 mod ply;
 mod tables;
+mod v3;
 mod world;
 mod written;
 

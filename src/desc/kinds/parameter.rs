@@ -147,6 +147,10 @@ pub enum ParameterKind {
         /// The name of the spectrum if none is given.
         default: &'static str,
     },
+    /// `spectrum`, `rgb` or the name of a spectrum `texture`: absorption, not negative; there is no default.
+    Absorption,
+    /// `float` or the name of a float `texture`: how much there is of a pigment, not negative; there is no default.
+    Pigment,
     /// `float` or `spectrum`: the index of refraction of a dielectric.
     GlassIndex {
         /// If none is given, at all wavelengths.
@@ -236,8 +240,8 @@ impl ParameterKind {
             Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::TwoMaterials => &["string"],
             Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
             Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
-            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } => &["float", "texture"],
-            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } => {
+            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } | Self::Pigment => &["float", "texture"],
+            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } | Self::Absorption => {
                 &["rgb", "spectrum", "blackbody", "texture"]
             }
             Self::GlassIndex { .. } => &["float", "spectrum"],
@@ -254,7 +258,9 @@ impl ParameterKind {
             Self::Float { range, .. } | Self::FloatTexturedIn { range, .. } => range.text().to_owned(),
             Self::Reflectance { .. } => FloatRange::Unit.text().to_owned(),
             Self::MetalIndex { .. } | Self::GlassIndex { .. } => FloatRange::Positive.text().to_owned(),
-            Self::MetalAbsorption { .. } => FloatRange::NotNegative.text().to_owned(),
+            Self::MetalAbsorption { .. } | Self::Absorption | Self::Pigment => {
+                FloatRange::NotNegative.text().to_owned()
+            }
             Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Encoding { .. } => "sRGB, linear, \"gamma G\" with G more than 0".to_owned(),
@@ -289,7 +295,13 @@ impl ParameterKind {
             Self::Vector([x, y, z]) | Self::Point([x, y, z]) => format!("[ {x} {y} {z} ]"),
             Self::Choice { default, .. } => (*default).to_owned(),
             Self::Emission => "the colour space's illuminant".to_owned(),
-            Self::File | Self::TwoMaterials | Self::Points(_) | Self::Photometric | Self::Inert(_) => String::new(),
+            Self::File
+            | Self::TwoMaterials
+            | Self::Points(_)
+            | Self::Photometric
+            | Self::Absorption
+            | Self::Pigment
+            | Self::Inert(_) => String::new(),
         }
     }
 }

@@ -1,13 +1,16 @@
 //! `Camera`.
 
+use std::sync::Arc;
+
 use super::options::Surroundings;
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
+use super::realistic;
 use crate::desc::{ApertureDesc, CameraDesc, CameraKind, MotionDesc};
 use crate::error::Span;
+use crate::sampling::SphereMap;
 
-const KNOWN: [&str; 2] = ["perspective", "orthographic"];
-const LATER: [&str; 2] = ["realistic", "spherical"];
+const KNOWN: [&str; 4] = ["perspective", "orthographic", "spherical", "realistic"];
 
 /// A camera and the name of its view, if it has one.
 #[derive(Clone, Debug)]
@@ -43,15 +46,16 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings
         ..default_camera(around.ctm)
     };
     let kind = match kind {
-        "perspective" => CameraKind::Perspective {
+        "perspective" => Some(CameraKind::Perspective {
             fov: reader.float_in("fov", 90.0, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees"),
             near_clip: reader.not_negative("nearclip", 0.0),
-        },
-        "orthographic" => CameraKind::Orthographic,
+        }),
+        "orthographic" => Some(CameraKind::Orthographic),
+        "spherical" => Some(CameraKind::Spherical(sphere_map(&mut reader))),
+        "realistic" => realistic::read(&mut reader).map(|desc| CameraKind::Realistic(Arc::new(desc))),
         _ => {
-            let classes = (&KNOWN[..], &LATER[..]);
             let instead = "a perspective one with default parameters stands in";
-            unknown_type(reader.report(), "camera", kind, span, classes, instead);
+            unknown_type(reader.report(), "camera", kind, span, (&KNOWN, &[]), instead);
             return NamedCamera {
                 name: None,
                 camera: default,
@@ -59,21 +63,51 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings
             };
         }
     };
-    let camera = CameraDesc {
-        kind,
-        screen: screen_window(&mut reader),
-        frame_aspect: reader
-            .has("frameaspectratio")
-            .then(|| reader.positive("frameaspectratio", 1.0)),
-        lens_radius: reader.not_negative("lensradius", 0.0),
-        focal_distance: reader.positive("focaldistance", default.focal_distance),
-        aperture: aperture(&mut reader),
+    let common = CameraDesc {
         shutter: shutter(&mut reader),
+        kind: kind.clone().unwrap_or_else(|| default.kind.clone()),
         ..default
+    };
+    let camera = match kind {
+        Some(CameraKind::Perspective { .. } | CameraKind::Orthographic) => CameraDesc {
+            screen: screen_window(&mut reader),
+            frame_aspect: reader
+                .has("frameaspectratio")
+                .then(|| reader.positive("frameaspectratio", 1.0)),
+            lens_radius: reader.not_negative("lensradius", 0.0),
+            focal_distance: reader.positive("focaldistance", common.focal_distance),
+            aperture: aperture(&mut reader),
+            ..common
+        },
+        Some(CameraKind::Spherical(_)) => {
+            let why = "a spherical camera has neither a screen nor a lens";
+            let names = ["screenwindow", "frameaspectratio", "lensradius", "focaldistance"];
+            reader.inert(&names.map(|name| (name, why)));
+            common
+        }
+        Some(CameraKind::Realistic(_)) | None => common,
     };
     let name = view_name(&mut reader);
     reader.finish();
     NamedCamera { name, camera, span }
+}
+
+fn sphere_map(reader: &mut ParamReader<'_>) -> SphereMap {
+    let Some((name, span)) = reader.string("mapping") else {
+        return SphereMap::EqualArea;
+    };
+    match name.as_str() {
+        "equalarea" => SphereMap::EqualArea,
+        "equirectangular" => SphereMap::LatLong,
+        _ => {
+            let known = ["equalarea", "equirectangular"];
+            let message = format!("a spherical camera's `mapping` is `equalarea` or `equirectangular`, not `{name}`");
+            reader
+                .report()
+                .unknown(span, message, "it is `equalarea`", &name, &known);
+            SphereMap::EqualArea
+        }
+    }
 }
 
 fn screen_window(reader: &mut ParamReader<'_>) -> Option<[f64; 4]> {

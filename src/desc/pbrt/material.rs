@@ -7,13 +7,14 @@ use super::reader::{ParamReader, unknown_type};
 use super::world::{Materials, default_material};
 use crate::desc::kinds::materials as kinds;
 use crate::desc::{
-    CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, MeasuredDesc,
-    Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MATERIALS, MaterialDesc, MaterialId,
+    MaterialKind, MeasuredDesc, Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
 };
 use crate::error::Span;
 use crate::image_io::Encoding;
 
-const LATER: [&str; 2] = ["hair", "subsurface"];
+/// The pigment of hair of which nothing is said: brown.
+const DEFAULT_EUMELANIN: f32 = 1.3;
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
 pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> MaterialDesc {
@@ -83,8 +84,13 @@ fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> MaterialDesc 
             ..default_material(span)
         };
     }
+    if kind == "subsurface" {
+        let message = "the material `subsurface` is not supported: light does not travel under surfaces here";
+        reader.report().unsupported(span, message, "a diffuse one stands in");
+        return default_material(span);
+    }
     let known = MATERIALS.each_ref().map(|entry| entry.name);
-    let classes = (&known[..], &LATER[..]);
+    let classes = (&known[..], &[][..]);
     unknown_type(
         reader.report(),
         "material",
@@ -130,6 +136,7 @@ fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str
             roughness: roughness(reader, &CONDUCTOR),
             coat: coat(reader, &kinds::INTERFACE_ETA, &INTERFACE),
         },
+        "hair" => MaterialKind::Hair(hair(reader)),
         "mix" => mix(reader, materials),
         "principled" => MaterialKind::Principled(principled(reader)),
         "measured" => match measured(reader) {
@@ -220,6 +227,47 @@ fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind 
     MaterialKind::Mix {
         materials: slots.unwrap_or([MaterialId(0); 2]),
         amount: reader.float_textured_by(&kinds::MIX_AMOUNT),
+    }
+}
+
+/// As in pbrt-v4, what is said of the colour counts in this order.
+fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
+    let names = [
+        kinds::SIGMA_A.name,
+        kinds::HAIR_COLOR.name,
+        kinds::EUMELANIN.name,
+        kinds::PHEOMELANIN.name,
+    ];
+    let given: Vec<&str> = names.into_iter().filter(|name| reader.has(name)).collect();
+    if let [first, rest @ ..] = &given[..]
+        && *first != kinds::EUMELANIN.name
+    {
+        for name in rest {
+            let span = reader.span_of(name);
+            let message = format!("`{name}` has no effect: there is `{first}`");
+            reader.report().warning(span, message);
+        }
+    }
+    let absorption = reader.absorption_by(&kinds::SIGMA_A);
+    let color = reader.reflectance_by(&kinds::HAIR_COLOR);
+    let pigments = [&kinds::EUMELANIN, &kinds::PHEOMELANIN].map(|pigment| reader.pigment_by(pigment));
+    HairDesc {
+        color: match (absorption, color, pigments) {
+            (Some(sigma), ..) => HairColorDesc::Absorption(sigma),
+            (None, Some(color), _) => HairColorDesc::Reflectance(color),
+            (None, None, [None, None]) => HairColorDesc::Pigments {
+                eumelanin: Textured::Value(DEFAULT_EUMELANIN),
+                pheomelanin: Textured::Value(0.0),
+            },
+            (None, None, [eumelanin, pheomelanin]) => HairColorDesc::Pigments {
+                eumelanin: eumelanin.unwrap_or(Textured::Value(0.0)),
+                pheomelanin: pheomelanin.unwrap_or(Textured::Value(0.0)),
+            },
+        },
+        eta: reader.float_by(&kinds::HAIR_ETA) as f32,
+        beta_m: reader.float_textured_by(&kinds::BETA_M),
+        beta_n: reader.float_textured_by(&kinds::BETA_N),
+        alpha: reader.float_textured_by(&kinds::HAIR_ALPHA),
     }
 }
 

@@ -137,16 +137,23 @@ impl Options {
                 report.error(span, format!("there is a view `{name}` already"));
             }
             let [open, close] = camera.camera.shutter;
+            // The exposure of pbrt-v3 does not go by the shutter.
+            let exposure_time = if report.is_old() { 1.0 } else { close - open };
             let film = self.film.clone().unwrap_or_else(|| film::default_film(file));
             views.push(ViewDesc {
                 name,
                 camera: camera.camera.clone(),
-                film: FilmDesc {
-                    exposure_time: close - open,
-                    ..film
-                },
-                filter: self.filter.unwrap_or(film::DEFAULT_FILTER),
-                sampler: self.sampler.unwrap_or(sampler::DEFAULT),
+                film: FilmDesc { exposure_time, ..film },
+                filter: self.filter.unwrap_or(if report.is_old() {
+                    film::OLD_DEFAULT_FILTER
+                } else {
+                    film::DEFAULT_FILTER
+                }),
+                sampler: self.sampler.unwrap_or(if report.is_old() {
+                    sampler::OLD_DEFAULT
+                } else {
+                    sampler::DEFAULT
+                }),
                 span: camera.span,
             });
         }
@@ -176,7 +183,10 @@ pub(super) fn render_option(report: &mut Report, name: &str, value: &str, span: 
         .filter(|c| !matches!(c, '-' | '_'))
         .collect::<String>()
         .to_lowercase();
-    if let Some((_, why)) = INERT.iter().find(|&&(known, _)| known == plain) {
+    let is_flag = plain.starts_with("disable") || matches!(plain.as_str(), "forcediffuse" | "pixelstats" | "wavefront");
+    if is_flag && !matches!(value, "true" | "false") {
+        report.error(span, format!("the option `{name}` is `true` or `false`, not `{value}`"));
+    } else if let Some((_, why)) = INERT.iter().find(|&&(known, _)| known == plain) {
         report.warning(span, format!("the option `{name}` has no effect: {why}"));
     } else if UNSUPPORTED.contains(&plain.as_str()) {
         if value != "false" {

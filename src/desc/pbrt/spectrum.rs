@@ -96,7 +96,8 @@ impl ParamReader<'_> {
             let known: Vec<&str> = named_spectra().collect();
             let help = suggest::closest(name, &known).map(|n| format!("did you mean `{n}`?"));
             let message = format!("`{name}` is neither the name of a spectrum nor a file");
-            self.report().error_with_help(span, message, help);
+            let help = help.unwrap_or_else(|| format!("the names are {}", known.join(", ")));
+            self.report().error_with_help(span, message, Some(help));
             return None;
         }
         match self.context.read_text(&path) {

@@ -166,17 +166,22 @@ impl Materials {
         })
     }
 
-    /// Defines a name; what is wrong with that, if anything is.
-    pub fn define(&mut self, name: String, span: Span, material: MaterialDesc) -> Option<String> {
-        let index = self.named(name.clone(), span);
-        if !matches!(self.slots[index], Slot::Undefined { .. }) {
-            return Some(format!("there is a named material `{name}` already"));
+    /// Whether a name is defined.
+    pub fn is_defined(&self, name: &str) -> bool {
+        let index = self.names.get(name);
+        index.is_some_and(|&index| !matches!(self.slots[index], Slot::Undefined { .. }))
+    }
+
+    /// Defines a name; what uses it from here on means this material.
+    pub fn define(&mut self, name: String, span: Span, material: MaterialDesc) {
+        if self.is_defined(&name) {
+            self.names.remove(&name);
         }
+        let index = self.named(name.clone(), span);
         self.slots[index] = Slot::Defined(Box::new(MaterialDesc {
             name: Some(name),
             ..material
         }));
-        None
     }
 
     /// All slots.

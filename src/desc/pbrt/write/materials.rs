@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use super::Writer;
 use super::entity::Entity;
 use crate::desc::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
-    SceneDesc, SpectrumDesc, SpectrumValue, Textured,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
+    ReliefDesc, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, Textured,
 };
 use crate::error::Result;
 
@@ -73,6 +73,7 @@ impl Writer<'_> {
             MaterialKind::ThinDielectric { .. } => "thindielectric",
             MaterialKind::CoatedDiffuse { .. } => "coateddiffuse",
             MaterialKind::CoatedConductor { .. } => "coatedconductor",
+            MaterialKind::Hair(_) => "hair",
             MaterialKind::Interface => "interface",
             MaterialKind::Mix { .. } => "mix",
             MaterialKind::Principled(_) => "principled",
@@ -134,6 +135,7 @@ impl Writer<'_> {
                 self.roughness(e, &coat.roughness, "interface.", false);
                 put_coat(e, coat, names);
             }
+            MaterialKind::Hair(hair) => put_hair(e, hair, names),
             MaterialKind::Interface => {}
             MaterialKind::Mix { materials, amount } => {
                 let [a, b] = materials.map(|id| self.material_names[id.0 as usize].clone());
@@ -198,6 +200,20 @@ fn put_coat(e: &mut Entity, coat: &CoatDesc, names: &[String]) {
         .float_textured("g", &coat.g, names)
         .integer("maxdepth", coat.max_depth.into())
         .integer("nsamples", coat.samples.into());
+}
+
+fn put_hair(e: &mut Entity, hair: &HairDesc, names: &[String]) {
+    match &hair.color {
+        HairColorDesc::Absorption(sigma) => e.spectrum_textured("sigma_a", sigma, names),
+        HairColorDesc::Reflectance(color) => e.spectrum_textured("color", color, names),
+        HairColorDesc::Pigments { eumelanin, pheomelanin } => e
+            .float_textured("eumelanin", eumelanin, names)
+            .float_textured("pheomelanin", pheomelanin, names),
+    };
+    e.single("eta", hair.eta)
+        .float_textured("beta_m", &hair.beta_m, names)
+        .float_textured("beta_n", &hair.beta_n, names)
+        .float_textured("alpha", &hair.alpha, names);
 }
 
 fn put_principled(e: &mut Entity, principled: &PrincipledDesc, names: &[String]) {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use crate::desc::{ImageDesc, MeshDesc};
+use crate::desc::{ImageDesc, LensSurface, MeshDesc, RealisticDesc};
 use crate::error::{Error, Result};
 use crate::image_io::{Image, PendingOutput};
 
@@ -78,6 +78,15 @@ impl Parts {
         self.once(rows.as_ptr() as usize, "sensor", "txt", |path| {
             let lines: Vec<_> = rows.iter().map(|[l, r, g, b]| format!("{l} {r} {g} {b}\n")).collect();
             fs::write(path, lines.concat()).map_err(|e| Error::io("write", path, e))
+        })
+    }
+
+    /// The table of a camera's lenses.
+    pub fn lenses(&mut self, lenses: &Arc<RealisticDesc>) -> Result<String> {
+        self.once(Arc::as_ptr(lenses) as usize, "lenses", "txt", |path| {
+            let line = |s: &LensSurface| format!("{} {} {} {}\n", s.radius, s.thickness, s.eta, s.diameter);
+            let lines: String = lenses.surfaces.iter().map(line).collect();
+            fs::write(path, lines).map_err(|e| Error::io("write", path, e))
         })
     }
 

@@ -1,13 +1,16 @@
 //! What stands before `WorldBegin`: cameras, film, filter, sampler, integrator; and media, which cameras may stand in.
 
 use super::Writer;
+use std::sync::Arc;
+
 use super::entity::{Entity, quoted};
 use crate::desc::{
-    ApertureDesc, CameraKind, CropDesc, Distribution, FilmDesc, FilterDesc, FilterKind, Heuristic, IntegratorKind,
-    LightSamplerKind, MeasureDesc, MediumDesc, PhotonFilter, SamplerDesc, SamplerKind, SensorDesc, Strategy,
-    Termination, ViewDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, Distribution, FilmDesc, FilmKind, FilterDesc, FilterKind,
+    GBufferSpace, Heuristic, IntegratorKind, LightSamplerKind, MeasureDesc, MediumDesc, PhotonFilter, RealisticDesc,
+    SamplerDesc, SamplerKind, SensorDesc, StopShape, Strategy, Termination, ViewDesc,
 };
 use crate::error::{Error, Result};
+use crate::sampling::SphereMap;
 
 impl Writer<'_> {
     pub(super) fn options(&mut self) -> Result<()> {
@@ -48,30 +51,35 @@ impl Writer<'_> {
         if !self.desc.media.is_empty() {
             self.line(&format!("MediumInterface \"\" {}", quoted(&medium)));
         }
-        let mut entity = match camera.kind {
+        let mut entity = match &camera.kind {
             CameraKind::Perspective { fov, near_clip } => {
                 let mut entity = Entity::new("Camera", "perspective");
-                entity.float("fov", fov);
-                if near_clip != 0.0 {
-                    entity.float("nearclip", near_clip);
+                entity.float("fov", *fov);
+                if *near_clip != 0.0 {
+                    entity.float("nearclip", *near_clip);
                     self.note("Camera \"float nearclip\"");
                 }
+                self.screen_and_lens(&mut entity, camera);
                 entity
             }
-            CameraKind::Orthographic => Entity::new("Camera", "orthographic"),
+            CameraKind::Orthographic => {
+                let mut entity = Entity::new("Camera", "orthographic");
+                self.screen_and_lens(&mut entity, camera);
+                entity
+            }
+            CameraKind::Spherical(map) => {
+                let mut entity = Entity::new("Camera", "spherical");
+                entity.string(
+                    "mapping",
+                    match map {
+                        SphereMap::EqualArea => "equalarea",
+                        SphereMap::LatLong => "equirectangular",
+                    },
+                );
+                entity
+            }
+            CameraKind::Realistic(lenses) => self.lenses(lenses)?,
         };
-        if let Some(window) = camera.screen {
-            entity.floats("screenwindow", &window);
-        }
-        if let Some(aspect) = camera.frame_aspect {
-            entity.float("frameaspectratio", aspect);
-        }
-        entity.float("lensradius", camera.lens_radius);
-        entity.float("focaldistance", camera.focal_distance);
-        if let ApertureDesc::Polygon { blades, rotation } = camera.aperture {
-            entity.integer("blades", blades.into()).float("bladerotation", rotation);
-            self.note("Camera \"integer blades\"");
-        }
         entity.float("shutteropen", camera.shutter[0]);
         entity.float("shutterclose", camera.shutter[1]);
         if is_one_of_several || view.name != "camera" {
@@ -84,8 +92,66 @@ impl Writer<'_> {
         self.put(entity)
     }
 
+    fn screen_and_lens(&mut self, entity: &mut Entity, camera: &CameraDesc) {
+        if let Some(window) = camera.screen {
+            entity.floats("screenwindow", &window);
+        }
+        if let Some(aspect) = camera.frame_aspect {
+            entity.float("frameaspectratio", aspect);
+        }
+        entity
+            .float("lensradius", camera.lens_radius)
+            .float("focaldistance", camera.focal_distance);
+        if let ApertureDesc::Polygon { blades, rotation } = camera.aperture {
+            entity.integer("blades", blades.into()).float("bladerotation", rotation);
+            self.note("Camera \"integer blades\"");
+        }
+    }
+
+    fn lenses(&mut self, lenses: &Arc<RealisticDesc>) -> Result<Entity> {
+        let mut entity = Entity::new("Camera", "realistic");
+        entity
+            .string("lensfile", &self.parts.lenses(lenses)?)
+            .float("focusdistance", lenses.focus_distance);
+        if let Some(stop) = lenses.surfaces.iter().find(|surface| surface.radius == 0.0) {
+            entity.float("aperturediameter", stop.diameter);
+        }
+        let shape = match &lenses.shape {
+            StopShape::Round => return Ok(entity),
+            StopShape::Gaussian => "gaussian",
+            StopShape::Square => "square",
+            StopShape::Pentagon => "pentagon",
+            StopShape::Star => "star",
+            StopShape::Image(image) => &self.parts.image(image)?,
+        };
+        entity.string("aperture", shape);
+        Ok(entity)
+    }
+
     fn film(&mut self, film: &FilmDesc) -> Result<()> {
-        let mut entity = Entity::new("Film", "rgb");
+        let mut entity = match film.kind {
+            FilmKind::Rgb => Entity::new("Film", "rgb"),
+            FilmKind::GBuffer(space) => {
+                let mut entity = Entity::new("Film", "gbuffer");
+                entity.string(
+                    "coordinatesystem",
+                    match space {
+                        GBufferSpace::Camera => "camera",
+                        GBufferSpace::World => "world",
+                    },
+                );
+                entity
+            }
+            FilmKind::Spectral(bins) => {
+                let mut entity = Entity::new("Film", "spectral");
+                entity
+                    .single("lambdamin", bins.range[0])
+                    .single("lambdamax", bins.range[1])
+                    .integer("nbuckets", bins.count.into());
+                entity
+            }
+        };
+        entity.float("diagonal", film.diagonal);
         let [width, height] = film.resolution;
         entity
             .integer("xresolution", width.into())
