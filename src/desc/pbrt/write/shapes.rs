@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::Writer;
 use super::entity::{Entity, quoted};
-use crate::desc::{MediumId, MeshDesc, ShapeDesc, ShapeKind, Textured};
+use crate::desc::{MediumId, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind, Textured};
 use crate::error::Result;
 
 /// Triangles of a mesh that stands in the file itself, at most.
@@ -57,6 +57,22 @@ impl Writer<'_> {
                     entity.float("radius", *radius);
                     entity
                 }
+                ShapeKind::Quadric { surface, phi_max } => quadric(surface, *phi_max),
+                ShapeKind::BilinearMesh(patches) => bilinear_mesh(patches),
+                ShapeKind::LoopSubdivision { cage, levels } => {
+                    let mut entity = Entity::new("Shape", "loopsubdiv");
+                    entity.integer("levels", (*levels).into());
+                    put_triangles(&mut entity, cage);
+                    entity
+                }
+                ShapeKind::DisplacedMesh { mesh, displacement } => {
+                    let mut entity = Entity::new("Shape", "plymesh");
+                    entity
+                        .string("filename", &writer.parts.mesh(mesh)?)
+                        .float_textured("displacement", &displacement.texture, &writer.texture_names)
+                        .float("displacement.edgelength", displacement.edge_length);
+                    entity
+                }
             };
             if shape.alpha != Textured::Value(1.0) {
                 entity.float_textured("alpha", &shape.alpha, &writer.texture_names);
@@ -91,22 +107,68 @@ impl Writer<'_> {
             return Ok(entity);
         }
         let mut entity = Entity::new("Shape", "trianglemesh");
-        let vectors = |vectors: &[Vec3]| -> Vec<f32> { vectors.iter().flat_map(Vec3::to_array).collect() };
-        entity.integers("indices", mesh.indices.iter().flatten().map(|&i| i64::from(i)));
-        entity.singles("point3", "P", vectors(&mesh.positions).into_iter());
+        put_triangles(&mut entity, mesh);
         if let Some(end) = &mesh.positions_end {
-            entity.singles("point3", "P1", vectors(end).into_iter());
+            put_vectors(&mut entity, "point3", "P1", end);
             self.note("Shape \"trianglemesh\" \"point3 P1\"");
         }
-        if !mesh.normals.is_empty() {
-            entity.singles("normal", "N", vectors(&mesh.normals).into_iter());
-        }
-        if !mesh.tangents.is_empty() {
-            entity.singles("vector3", "S", vectors(&mesh.tangents).into_iter());
-        }
-        if !mesh.uvs.is_empty() {
-            entity.singles("point2", "uv", mesh.uvs.iter().flat_map(Vec2::to_array));
-        }
+        put_vectors(&mut entity, "normal", "N", &mesh.normals);
+        put_vectors(&mut entity, "vector3", "S", &mesh.tangents);
+        put_uvs(&mut entity, &mesh.uvs);
         Ok(entity)
+    }
+}
+
+fn quadric(surface: &QuadricDesc, phi_max: f64) -> Entity {
+    let mut entity;
+    match *surface {
+        QuadricDesc::Sphere { radius, z } => {
+            entity = Entity::new("Shape", "sphere");
+            entity.float("radius", radius).float("zmin", z[0]).float("zmax", z[1]);
+        }
+        QuadricDesc::Cylinder { radius, z } => {
+            entity = Entity::new("Shape", "cylinder");
+            entity.float("radius", radius).float("zmin", z[0]).float("zmax", z[1]);
+        }
+        QuadricDesc::Disk {
+            height,
+            radius,
+            inner_radius,
+        } => {
+            entity = Entity::new("Shape", "disk");
+            entity
+                .float("height", height)
+                .float("radius", radius)
+                .float("innerradius", inner_radius);
+        }
+    }
+    entity.float("phimax", phi_max);
+    entity
+}
+
+fn bilinear_mesh(patches: &PatchMeshDesc) -> Entity {
+    let mut entity = Entity::new("Shape", "bilinearmesh");
+    entity.integers("indices", patches.indices.iter().flatten().map(|&i| i64::from(i)));
+    put_vectors(&mut entity, "point3", "P", &patches.positions);
+    put_vectors(&mut entity, "normal", "N", &patches.normals);
+    put_uvs(&mut entity, &patches.uvs);
+    entity
+}
+
+fn put_triangles(entity: &mut Entity, mesh: &MeshDesc) {
+    entity.integers("indices", mesh.indices.iter().flatten().map(|&i| i64::from(i)));
+    put_vectors(entity, "point3", "P", &mesh.positions);
+}
+
+/// A parameter, unless there are none.
+fn put_vectors(entity: &mut Entity, kind: &str, name: &str, vectors: &[Vec3]) {
+    if !vectors.is_empty() {
+        entity.singles(kind, name, vectors.iter().flat_map(Vec3::to_array));
+    }
+}
+
+fn put_uvs(entity: &mut Entity, uvs: &[Vec2]) {
+    if !uvs.is_empty() {
+        entity.singles("point2", "uv", uvs.iter().flat_map(Vec2::to_array));
     }
 }
