@@ -151,6 +151,8 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Principled(_) => "principled",
         Material::Relief(relief) => material_kind(&relief.material),
         Material::Measured(_) => "measured",
+        Material::Hair(_) => "hair",
+        Material::Interface => "interface",
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::{AreaLightDesc, MaterialId, MotionDesc, Textured};
+use super::{AreaLightDesc, MaterialId, MediumInterfaceDesc, MotionDesc, Textured};
 use crate::error::Span;
 
 /// One shape.
@@ -21,6 +21,8 @@ pub struct ShapeDesc {
     pub reverse_orientation: bool,
     /// What it is made of.
     pub material: MaterialId,
+    /// What is on its two sides, if that differs; else whatever a ray comes through goes on.
+    pub media: Option<MediumInterfaceDesc>,
     /// How much of it there is: rays pass it with the probability 1 - alpha. In [0, 1] unless from a texture; default 1.
     pub alpha: Textured<f32>,
     /// What it emits.

@@ -67,13 +67,37 @@ impl SurfaceInteraction {
     /// [error](SurfaceInteraction::error) `to_error`; both zero for a point in space).
     #[inline]
     pub fn spawn_ray_to(&self, to: Vec3, to_error: f32, to_ng: Vec3) -> Ray {
-        // Seen from afar, the direction's rounding and the backend's add to the error there, in proportion to the distance.
-        let from_afar = gamma(32) * to_ng.abs().dot((to - self.p).abs());
         let origin = offset_ray_origin(self.p, self.error, self.ng, to - self.p);
-        let end = offset_ray_origin(to, to_error + from_afar, to_ng, origin - to);
+        Ray::between(origin, to, to_error, to_ng, self.time)
+    }
+
+    /// The rest of `ray`, which met this surface and goes on through it.
+    #[inline]
+    pub fn rest_of_ray(&self, ray: &Ray) -> Ray {
+        let rest = self.spawn_ray(ray.direction);
+        if ray.tfar == f32::INFINITY {
+            return rest;
+        }
+        // To the same end, by a direction of which that is again one.
+        let end = ray.origin + ray.direction;
         Ray {
+            direction: end - rest.origin,
+            tfar: ray.tfar,
+            ..rest
+        }
+    }
+}
+
+impl Ray {
+    /// A ray from `origin` that ends just before `to`, at distance 1; see [`SurfaceInteraction::spawn_ray_to`].
+    #[inline]
+    pub fn between(origin: Vec3, to: Vec3, to_error: f32, to_ng: Vec3, time: f32) -> Self {
+        // Seen from afar, the direction's rounding and the backend's add to the error there, in proportion to the distance.
+        let from_afar = gamma(32) * to_ng.abs().dot((to - origin).abs());
+        let end = offset_ray_origin(to, to_error + from_afar, to_ng, origin - to);
+        Self {
             tfar: 1.0 - FAR_GAP,
-            ..Ray::new(origin, end - origin, self.time)
+            ..Self::new(origin, end - origin, time)
         }
     }
 }

@@ -360,7 +360,7 @@ fn the_cornell_box_is_read() {
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     assert_eq!(scene.views[0].film.resolution, [1024, 1024]);
     assert_eq!(scene.views[0].sampler.pixel_samples, 64);
-    let eye = scene.views[0].camera.world_from_camera.start.translation;
+    let eye = scene.views[0].camera.world_from_camera().start.translation;
     assert!(eye.distance(DVec3::new(0.0, 1.0, 6.8)) < 1e-12, "{eye}");
     assert_eq!(scene.shapes.len(), 8);
     assert_eq!(scene.materials.len(), 9);

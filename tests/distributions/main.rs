@@ -9,6 +9,7 @@ mod cameras;
 mod energy;
 mod environments;
 mod furnace;
+mod hair;
 mod kinds;
 mod light_emission;
 mod light_samplers;
@@ -16,6 +17,7 @@ mod lights;
 mod measured;
 mod narrow;
 mod shapes;
+mod spherical;
 mod textured;
 
 use glam::Vec2;
