@@ -17,7 +17,9 @@ use crate::error::{Diagnostic, Error, Result, Severity};
 /// Whether a file is a mesh, by its extension.
 pub fn is_mesh(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    [".ply", ".ply.gz", ".obj", ".obj.gz"].iter().any(|end| name.ends_with(end))
+    [".ply", ".ply.gz", ".obj", ".obj.gz"]
+        .iter()
+        .any(|end| name.ends_with(end))
 }
 
 /// Reads a mesh and puts it on a stage: upright along y, lit by `environment`, an image of all directions, if one is given.
@@ -27,7 +29,11 @@ pub fn is_mesh(path: &Path) -> bool {
 /// As [`super::load`].
 pub fn load(path: &Path, environment: Option<&Path>, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let subject = if name.contains(".obj") { read_obj(path)? } else { read_ply(path)? };
+    let subject = if name.contains(".obj") {
+        read_obj(path)?
+    } else {
+        read_ply(path)?
+    };
     let mut stage = Stage::default();
     stage.surroundings(&bounds(&subject.parts), environment);
     stage.subject(&subject);
@@ -155,9 +161,9 @@ impl Stage {
         let distance = 1.02 * radius / HALF_ANGLE.to_radians().sin();
         let eye = center + Vec3::new(0.45, 0.35, 0.82).normalize() * distance;
         let Vec3 { x, y, z } = center;
-        self.line(&format!("LookAt {} {} {}  {x} {y} {z}  0 1 0", eye.x, eye.y, eye.z));
-        // pbrt's cameras mirror: without this, letters on the mesh would be back to front.
+        // pbrt's camera space is left-handed: without this, letters on the mesh would be back to front.
         self.line("Scale -1 1 1");
+        self.line(&format!("LookAt {} {} {}  {x} {y} {z}  0 1 0", eye.x, eye.y, eye.z));
         self.line(&format!("Camera \"perspective\" \"float fov\" {}", 2.0 * HALF_ANGLE));
         self.line("Film \"rgb\" \"integer xresolution\" 1024 \"integer yresolution\" 1024");
         self.line("Sampler \"zsobol\" \"integer pixelsamples\" 128");
@@ -167,14 +173,20 @@ impl Stage {
             // The pole of an environment is +z, that of the stage +y.
             self.line("AttributeBegin Rotate -90 1 0 0");
             let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-            self.line(&format!("LightSource \"infinite\" \"string filename\" {}", quoted(&file.to_string_lossy())));
+            self.line(&format!(
+                "LightSource \"infinite\" \"string filename\" {}",
+                quoted(&file.to_string_lossy())
+            ));
             self.line("AttributeEnd");
             return;
         }
         self.line("LightSource \"infinite\" \"rgb L\" [0.45 0.48 0.52]");
         let floor = 40.0 * radius;
         self.line("AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]");
-        self.line(&format!("Translate {x} {} {z} Rotate -90 1 0 0 Shape \"disk\" \"float radius\" {floor}", min.y));
+        self.line(&format!(
+            "Translate {x} {} {z} Rotate -90 1 0 0 Shape \"disk\" \"float radius\" {floor}",
+            min.y
+        ));
         self.line("AttributeEnd");
         // A lamp to the left above, as large as the mesh.
         let lamp = center + Vec3::new(-0.9, 1.9, 1.2) * radius;

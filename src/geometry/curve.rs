@@ -237,8 +237,8 @@ impl CurveSet {
         let to_world = |v: DVec3| self.world_from_object.transform_vector3(v).as_vec3();
         LocalSurface {
             p: origin + direction * hit.t,
-            // A ray that leaves must not meet the curve again, which turns to face it.
-            error: self.world_from_object.transform_vector3(frame.y * hit.width).length(),
+            // A ray that leaves must not meet the curve again, which turns to face it; at the rim of a cylinder its normal leads across.
+            error: 1.5 * self.world_from_object.transform_vector3(frame.y * hit.width).length(),
             ng,
             ns: ng.as_vec3(),
             dpdu: to_world(dpdu),

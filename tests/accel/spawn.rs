@@ -170,7 +170,7 @@ fn a_ray_does_not_meet_the_primitive_that_it_leaves() {
                 // so may a bent curve, but not within its width, by which a ray leaves it.
                 let is_false = |t: f32| match world.geometry(hit.geometry).shape {
                     Shape::Patches(_) => *cos > 0.05 && t * cos < *error,
-                    Shape::Curves(_) => t < 0.5 * error,
+                    Shape::Curves(_) => t < 0.25 * error,
                     _ => true,
                 };
                 if let Some((other, t)) = answer

@@ -107,7 +107,10 @@ impl<'a> Reader<'a> {
     /// Reads a statement; what is to be warned about, if anything.
     fn statement(&mut self, keyword: Word<'a>) -> Result<Option<Problem>, Problem> {
         if keyword.bytes == b"newmtl" {
-            let name = self.words.rest().ok_or((keyword.place(), "expected a name".to_owned()))?;
+            let name = self
+                .words
+                .rest()
+                .ok_or((keyword.place(), "expected a name".to_owned()))?;
             self.file.materials.push(MtlMaterial {
                 name: name.text(),
                 diffuse: [0.8; 3],
@@ -152,12 +155,7 @@ impl<'a> Reader<'a> {
         &mut self.file.materials[last]
     }
 
-    fn number(
-        &mut self,
-        keyword: &Word,
-        range: std::ops::RangeInclusive<f32>,
-        expected: &str,
-    ) -> Result<f32, Problem> {
+    fn number(&mut self, keyword: &Word, range: std::ops::RangeInclusive<f32>, expected: &str) -> Result<f32, Problem> {
         let word = self
             .words
             .word()
@@ -208,7 +206,11 @@ impl<'a> Reader<'a> {
 /// What follows an option and its values: one word, or up to three numbers.
 fn after_option(text: Word<'_>) -> Word<'_> {
     let skip = |word: Word<'_>| -> usize {
-        let end = word.bytes.iter().position(u8::is_ascii_whitespace).unwrap_or(word.bytes.len());
+        let end = word
+            .bytes
+            .iter()
+            .position(u8::is_ascii_whitespace)
+            .unwrap_or(word.bytes.len());
         let space = word.bytes[end..].iter().position(|b| !b.is_ascii_whitespace());
         end + space.unwrap_or(word.bytes.len() - end)
     };
