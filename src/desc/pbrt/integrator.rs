@@ -13,13 +13,12 @@ const DEFAULT_MAX_DEPTH: u32 = 5;
 
 /// pbrt's integrators that one of Lucerna's stands for: its name and what to say. All converge to
 /// the same image.
-const STAND_INS: [(&str, &str, &str); 5] = [
+const STAND_INS: [(&str, &str, &str); 4] = [
     (
         "mlt",
         "bdpt",
         "`mlt` is not there: `bdpt` is used, which has the same paths but samples them independently",
     ),
-    ("volpath", "path", "`volpath` is taken for `path`"),
     (
         "simplevolpath",
         "path",
@@ -54,6 +53,8 @@ pub(super) fn default() -> IntegratorDesc {
 
 /// Reads an integrator of type `kind`.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
+    // One integrator here, with and without media.
+    let kind = if kind == "volpath" { "path" } else { kind };
     let stand_in = STAND_INS.iter().find(|&&(name, ..)| name == kind);
     let name = stand_in.map_or(kind, |&(_, name, _)| name);
     let entry = INTEGRATORS.iter().find(|entry| entry.name == name).unwrap_or_else(|| {
