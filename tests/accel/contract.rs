@@ -127,7 +127,7 @@ fn every_kernel_and_brute_force_give_the_same_bits() {
         let bits = |answers: &[Option<(lucerna::geometry::Hit, f32)>]| -> Vec<_> {
             answers.iter().map(|a| a.map(|(hit, t)| (hit, t.to_bits()))).collect()
         };
-        for (kernel, bvh) in Bvh::build_variants(&world, &options) {
+        for (kernel, bvh) in Bvh::build(&world, &options).variants() {
             let nearest = intersect(&bvh, &rays, None);
             assert_eq!(bits(&nearest), bits(&brute), "{name}, {kernel}");
             let any = occluded(&bvh, &rays, None);
@@ -166,7 +166,7 @@ fn a_million_rays_are_answered_alike_alone_and_together() {
     let count = if is_full() { 100_000_000 } else { 1_000_000 } / worlds.len() as u32;
     let mut hits = 0;
     for (seed, (name, world)) in (0..).zip(&worlds) {
-        let variants = Bvh::build_variants(world, &BuildOptions::default());
+        let variants = Bvh::build(world, &BuildOptions::default()).variants();
         for (batch, rays) in [
             rays(world, count / 2, 100 + seed),
             camera_rays(world, count / 2, 200 + seed),

@@ -21,7 +21,7 @@ use super::numbers::EventLanes;
 use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
 use super::stage::{Estimator, Stage, Vertex};
-use crate::accel::RayKind;
+use crate::accel::{RayKind, RayOrigin};
 use crate::film::{Film, Splat, TILE_SIZE};
 use crate::geometry::{HitPacket, LANES, SurfaceLanes};
 use crate::material::TransportMode;
@@ -150,6 +150,10 @@ impl<'s, E: Estimator> Wave<'s, E> {
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
         }
+        self.scene.accel().announce(RayOrigin {
+            from_light: batch.mode == TransportMode::Importance,
+            depth: batch.depth,
+        });
         let start = Instant::now();
         self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
         self.stats.backend_time += start.elapsed();
