@@ -130,7 +130,7 @@ impl BuildPlan {
             threads,
         };
         let start = Instant::now();
-        let (usual, ways): (Box<dyn Accel>, Vec<(String, Box<dyn Accel>)>) = match self.family {
+        let (usual, ways): (Box<dyn Accel>, Ways) = match self.family {
             #[cfg(feature = "embree")]
             Family::EmbreeFast | Family::EmbreeRobust => {
                 let scene = EmbreeScene::build(world, &options)?;
@@ -177,6 +177,9 @@ pub fn quality_name(quality: BuildQuality) -> &'static str {
     }
 }
 
+/// Ways to trace, by name.
+pub type Ways = Vec<(String, Box<dyn Accel>)>;
+
 /// A build, and the ways to trace through it.
 pub struct Built {
     /// What was to be built.
@@ -190,7 +193,7 @@ pub struct Built {
     /// Of the structures.
     pub bytes: usize,
     /// Ways to trace, by name.
-    pub contenders: Vec<(String, Box<dyn Accel>)>,
+    pub contenders: Ways,
 }
 
 #[cfg(feature = "embree")]

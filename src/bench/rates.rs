@@ -1,7 +1,8 @@
 //! How fast backends answer the same rays.
 //!
 //! The backends take turns, a few waves each, in an order that changes from turn to turn, so that other work on the machine
-//! disturbs all of them alike; a wave's time is the median of its turns, and a stream's the sum over its waves.
+//! disturbs all of them alike; a wave's time is the median of its turns, and a stream's the sum over its waves. The spread is that
+//! of the quartiles, taken likewise.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,9 +20,9 @@ const TURN: usize = 16;
 pub struct Rate {
     /// By the medians of the waves' times.
     pub median: f64,
-    /// Of the slowest turn of all waves.
+    /// By the upper quartiles of these times.
     pub least: f64,
-    /// Of the fastest.
+    /// By the lower quartiles.
     pub most: f64,
 }
 
@@ -31,30 +32,41 @@ pub fn measure(backends: &[&dyn Accel], stream: &Stream, turns: usize) -> Vec<Ra
     let threads = rayon::current_num_threads();
     let turns = turns.max(1);
     let kind = stream.kind.ray_kind();
-    let mut medians = vec![0.0; backends.len()];
-    let mut by_turn = vec![vec![0.0; turns]; backends.len()];
+    // The sums over waves of the lower quartile, the median and the upper quartile of its turns.
+    let mut seconds = vec![[0.0; 3]; backends.len()];
     for (place, waves) in stream.waves.chunks(TURN * threads).enumerate() {
-        let mut times = vec![vec![vec![0.0; turns]; waves.len()]; backends.len()];
+        let mut times = vec![vec![Vec::with_capacity(turns); waves.len()]; backends.len()];
         for turn in 0..turns {
             for i in 0..backends.len() {
                 let who = (i + turn + place) % backends.len();
                 for (wave, time) in trace_all(backends[who], kind, waves) {
-                    times[who][wave][turn] = time;
-                    by_turn[who][turn] += time;
+                    times[who][wave].push(time);
                 }
             }
         }
-        for (total, times) in medians.iter_mut().zip(&mut times) {
-            *total += times.iter_mut().map(|times| median(times)).sum::<f64>();
+        for (seconds, times) in seconds.iter_mut().zip(&mut times) {
+            for times in times {
+                times.sort_unstable_by(f64::total_cmp);
+                for (total, share) in seconds.iter_mut().zip([0.25, 0.5, 0.75]) {
+                    *total += quantile(times, share);
+                }
+            }
         }
     }
     let work = stream.rays() as f64 * threads as f64 * 1e-6;
-    let rate = |(median, turns): (f64, Vec<f64>)| Rate {
-        median: work / median,
-        least: work / turns.iter().copied().fold(0.0, f64::max),
-        most: work / turns.iter().copied().fold(f64::INFINITY, f64::min),
+    let rate = |[low, middle, high]: [f64; 3]| Rate {
+        median: work / middle,
+        least: work / high,
+        most: work / low,
     };
-    medians.into_iter().zip(by_turn).map(rate).collect()
+    seconds.into_iter().map(rate).collect()
+}
+
+/// Of numbers in order, the one that a share of them is below, linear between two.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    low + place.fract() * (high - low)
 }
 
 /// Traces waves on all threads; by wave, the seconds that each took.
@@ -70,12 +82,6 @@ fn trace_all(accel: &dyn Accel, kind: RayKind, waves: &[Vec<RayPacket>]) -> Vec<
         }
     };
     rayon::broadcast(of_thread).into_iter().flatten().collect()
-}
-
-fn median(times: &mut [f64]) -> f64 {
-    times.sort_unstable_by(f64::total_cmp);
-    let middle = times.len() / 2;
-    (times[middle] + times[(times.len() - 1) / 2]) / 2.0
 }
 
 /// Room for a wave: it is copied into place outside the measured time, as in a render it is in the cache.
@@ -98,5 +104,20 @@ impl Room {
         let time = start.elapsed();
         black_box((&self.rays, &self.hits));
         time
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_linear_between_numbers() {
+        let numbers = [1.0, 2.0, 4.0];
+        assert_eq!(
+            [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| quantile(&numbers, share)),
+            [1.0, 1.5, 2.0, 3.0, 4.0]
+        );
+        assert_eq!(quantile(&[7.0], 0.75), 7.0);
     }
 }

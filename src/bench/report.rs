@@ -94,9 +94,9 @@ pub struct RateReport {
     pub threads: usize,
     /// Millions of rays a second: the median of turns.
     pub mrays: f64,
-    /// Of the slowest turn.
+    /// The same by the upper quartile of turns' times.
     pub least: f64,
-    /// Of the fastest turn.
+    /// By the lower quartile.
     pub most: f64,
     /// Rays that met something.
     pub hits: usize,

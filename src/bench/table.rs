@@ -58,7 +58,7 @@ impl Report {
                 build.bytes_per_primitive
             )?;
         }
-        write!(f, "\n  {:46}", "million rays a second, spread of turns")?;
+        write!(f, "\n  {:46}", "million rays a second, half the quartiles' range")?;
         for stream in &case.streams {
             write!(f, "{:>COLUMN$}", stream.kind)?;
         }

@@ -48,7 +48,7 @@ fn a_scene_is_measured_by_every_kind_of_its_rays() {
     let sandbox = Sandbox::new();
     let page = ["ball.pbrt", "--html", "page.html"];
     let report = bench(&sandbox, &page);
-    assert_eq!(kinds(&report), ["camera", "shadow", "photon"]);
+    assert_eq!(kinds(&report), ["camera", "bounce 1", "shadow", "photon"]);
     assert_eq!(report["cases"][0]["instanced_primitives"], 1);
     check_results(&report, 0);
     for key in ["processor", "system", "compiler", "embree", "load"] {
@@ -112,7 +112,7 @@ fn saved_rays_are_replayed() {
     // A sphere is not in the file: its rays are for the scene only.
     bench(&sandbox, &["ball.pbrt", "--rays", "ball.rays", "--only", "bvh high"]);
     let again = bench(&sandbox, &["ball.pbrt", "--rays", "ball.rays", "--only", "bvh high"]);
-    assert_eq!(kinds(&again), ["camera", "shadow", "photon"]);
+    assert_eq!(kinds(&again), ["camera", "bounce 1", "shadow", "photon"]);
     let run = sandbox.lucerna(&["bench", "--rays", "ball.rays"]);
     run.expect(2);
 }
@@ -140,10 +140,14 @@ fn damaged_files_of_rays_are_refused() {
     let mut many = whole.clone();
     many[place] = b'9';
     refused(&many);
-    // A ray that is not a number, in the last stream but its answers.
+    // An origin that is not a number, in the first packet: behind header, triangles and the lengths of at most 16 calls.
+    let header = 16 + u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
+    let json: Value = serde_json::from_slice(&whole[16..header]).unwrap();
+    let bytes = |key: &str| (12 * json[key].as_u64().unwrap() as usize).next_multiple_of(64);
+    let packet = header + bytes("vertices") + bytes("triangles") + 64;
+    assert!(json["streams"][0]["waves"].as_u64().unwrap() <= 16);
     let mut nan = whole.clone();
-    let from = whole.len() - 4096 - 384 * 8;
-    nan[from..from + 384 * 8].fill(0xff);
+    nan[packet..packet + 32].fill(0xff);
     refused(&nan);
 }
 

@@ -29,9 +29,11 @@ pub enum Entry {
 
 impl Entry {
     /// Those that the library has.
-    pub const AVAILABLE: &[Self] = &[Self::Single, Self::Packet4, Self::Packet8, Self::Packet16, Self::Stream]
-        .split_at(4 + ffi::EMBREE_HAS_STREAMS as usize)
-        .0;
+    pub const AVAILABLE: &[Self] = if ffi::EMBREE_HAS_STREAMS == 1 {
+        &[Self::Single, Self::Packet4, Self::Packet8, Self::Packet16, Self::Stream]
+    } else {
+        &[Self::Single, Self::Packet4, Self::Packet8, Self::Packet16]
+    };
 }
 
 /// Where lane `first` of a row of packets of 8 is: packet and lane.

@@ -89,9 +89,9 @@ fn summary(report: &Report) -> String {
         };
         let robust = mean_ratio(report, &kind, Family::EmbreeRobust)
             .map_or(String::new(), |ratio| format!("; {ratio:.2} of its robust mode"));
-        let _ = write!(
+        let _ = writeln!(
             tiles,
-            "<div class=\"tile {}\"><small>{}</small><b>{fast:.2}</b><small>of Embree's fast mode{robust}</small></div>\n",
+            "<div class=\"tile {}\"><small>{}</small><b>{fast:.2}</b><small>of Embree's fast mode{robust}</small></div>",
             if fast >= 1.0 { "good" } else { "bad" },
             escaped(&kind)
         );
@@ -257,7 +257,7 @@ fn build_plot(case: &CaseReport, report: &Report) -> String {
                 "{}: {:.3} s, {mean:.2} million rays a second",
                 build.quality, build.seconds
             );
-            Some(([build.seconds, mean], text))
+            Some(([build.seconds * 1e3, mean], text))
         };
         let mut points: Vec<_> = builds.filter_map(point).collect();
         points.reverse();
@@ -272,7 +272,7 @@ fn build_plot(case: &CaseReport, report: &Report) -> String {
     }
     let style = Style {
         log_x: true,
-        x: "seconds to build",
+        x: "milliseconds to build",
         y: "million rays a second, mean over the kinds of ray",
         marks: None,
         proportional: false,
@@ -431,7 +431,7 @@ fn method(report: &Report) -> String {
         "<h2>How this was measured</h2>\n<p>The rays are those that a render asks about, in the calls in which it asks: recorded from a \
          render of each scene, or from paths through a synthetic world. After a pass over all of them, the contenders take turns of a few \
          calls each, in an order that changes, so that other work on the machine disturbs all alike. The time of a call is the median of \
-         its turns; whiskers show the slowest and the fastest turn of all calls together. What it takes to repack rays for a call that wants \
+         its turns; whiskers show the quartiles. What it takes to repack rays for a call that wants \
          them otherwise than in packets of eight is counted.</p>\n<p>Answers are compared with those of Lucerna's BVH: a ray differs if it \
          hits where the other does not, or something else at another distance. Of these a judge in double precision looks at some and says \
          whether the answer is wrong however arithmetic rounds.</p>\n<dl>\n{facts}</dl>\n"

@@ -19,7 +19,7 @@ pub fn class(family: Family) -> &'static str {
 /// Bars of the rates of contenders, the fastest first, with the spread of turns. The ways that renders do not take are pale.
 pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
     const ROW: f64 = 17.0;
-    const LABEL: f64 = 150.0;
+    const LABEL: f64 = 172.0;
     let mut sorted = results.to_vec();
     sorted.sort_by(|a, b| b.mrays.total_cmp(&a.mrays));
     let height = ROW * sorted.len() as f64 + 24.0;
@@ -198,12 +198,7 @@ pub fn ratios(rows: &[Ratio], what: &str) -> String {
         );
         let weight = if row.is_mean { "strong" } else { "" };
         svg.text(LABEL - 10.0, middle, Anchor::End, weight, &row.name);
-        let side = if row.ratio >= 1.0 {
-            (at + 10.0, Anchor::Start)
-        } else {
-            (at - 10.0, Anchor::End)
-        };
-        svg.text(side.0, middle, side.1, weight, &format!("{:.2}", row.ratio));
+        svg.text(WIDTH - 2.0, middle, Anchor::End, weight, &format!("{:.2}", row.ratio));
     }
     svg.finish(what)
 }
