@@ -1,5 +1,6 @@
-//! Our own BVH, pure Rust: a binned SAH build (`build`, `bins`) collapsed to eight children a node (`collapse`), and one
-//! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
+//! Our own BVH, pure Rust: binary trees by a binned SAH (`build`, `bins`), with spatial splits (`spatial`), or in little time by clustering
+//! (`ploc`), collapsed to eight children a node (`collapse`); and one traversal (`traverse`) over a kernel of vector instructions that is
+//! chosen at run time (`tracing`, `kernel`, `avx2`).
 //!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
 //! triangle would be hit. All kernels, and all ways through a tree, give the same bits.
@@ -12,15 +13,20 @@ mod bins;
 mod build;
 mod collapse;
 mod interleave;
+mod item;
 mod kernel;
 mod lanes;
 mod leaf;
 mod node;
 mod packet;
+mod ploc;
 mod prepare;
 pub(super) mod query;
 pub(super) mod ray;
+mod spatial;
 mod stream;
+#[cfg(test)]
+mod tests;
 mod tracing;
 mod traverse;
 mod tree;
@@ -36,7 +42,7 @@ use self::ray::{LocalRay, direction_scale};
 use self::tracing::Tracing;
 use self::traverse::{Level, STACK};
 use self::tree::GroupTrees;
-use super::{Accel, AccelInfo, Backend, BuildOptions, BuildQuality, HitFilter, RayKind};
+use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
 use crate::geometry::{GroupId, HitPacket, LANES, Opacity, RayPacket, World};
 
 /// A world and the trees over it.
@@ -64,17 +70,13 @@ pub struct Bvh {
 impl Bvh {
     /// Builds it, in the rayon pool of the caller. The tree does not depend on the number of threads.
     ///
-    /// The quality is the number of bins of the surface area heuristic along each axis: 8, 16 or 32. [`BuildOptions::robust`]
-    /// makes no difference.
+    /// Of low quality it is built by clustering, of medium quality by the surface area heuristic with 16 bins along each axis, of high
+    /// quality with 32 bins and spatial splits. [`BuildOptions::robust`] makes no difference.
     pub fn build(world: &Arc<World>, options: &BuildOptions) -> Self {
-        let bins = match options.quality {
-            BuildQuality::Low => 8,
-            BuildQuality::Medium => 16,
-            BuildQuality::High => 32,
-        };
+        let quality = options.quality;
         let groups = world.groups().par_iter();
         let groups: Vec<_> = groups
-            .map(|members| GroupTrees::build(world, members, &[], bins))
+            .map(|members| GroupTrees::build(world, members, &[], quality))
             .collect();
         let boxes: Vec<_> = (0..world.groups().len())
             .into_par_iter()
@@ -87,7 +89,7 @@ impl Bvh {
             .collect();
         Self {
             scene: Arc::new(Scene {
-                top: GroupTrees::build(world, world.root(), &instances, bins),
+                top: GroupTrees::build(world, world.root(), &instances, quality),
                 groups,
                 filtered: world
                     .geometries()

@@ -21,6 +21,7 @@ use super::numbers::EventLanes;
 use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
 use super::stage::{Estimator, Stage, Vertex};
+use super::times::lap;
 use crate::accel::{RayKind, RayOrigin};
 use crate::film::{Film, Splat, TILE_SIZE};
 use crate::geometry::{HitPacket, LANES, SurfaceLanes};
@@ -99,14 +100,19 @@ impl<'s, E: Estimator> Wave<'s, E> {
             (u64::from(WAVE_LANES) / pixels.all().area()).max(1) as u32
         };
         for first in samples.clone().step_by(at_once as usize) {
+            let mut start = Instant::now();
             let camera_rays = self.generate(&pixels, first..(first + at_once).min(samples.end));
             if E::LIGHT_PATHS {
                 self.emit();
-                self.finish_pending();
             }
+            lap(&mut start, &mut self.stats.times.sample);
+            // Light paths, if there are any, go before.
+            self.finish_pending();
             self.pending.push(camera_rays);
             self.finish_pending();
+            start = Instant::now();
             self.retire(place.tile);
+            lap(&mut start, &mut self.stats.times.film);
         }
     }
 
@@ -154,18 +160,29 @@ impl<'s, E: Estimator> Wave<'s, E> {
             from_light: batch.mode == TransportMode::Importance,
             depth: batch.depth,
         });
-        let start = Instant::now();
+        let mut start = Instant::now();
         self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
-        self.stats.backend_time += start.elapsed();
-        if kind == RayKind::Bounce {
-            self.stats.bounce_rays += batch.lanes.len() as u64;
-        }
+        let (stats, count) = (&mut self.stats, batch.lanes.len() as u64);
+        let time = match (kind, batch.mode) {
+            (RayKind::Bounce, TransportMode::Importance) => {
+                stats.photon_rays += count;
+                &mut stats.times.photon
+            }
+            (RayKind::Bounce, TransportMode::Radiance) => {
+                stats.bounce_rays += count;
+                &mut stats.times.bounce
+            }
+            // Camera rays were counted where they were made: some are traced for the sake of their packets.
+            (RayKind::Camera | RayKind::Shadow, _) => &mut stats.times.camera,
+        };
+        lap(&mut start, time);
     }
 
     /// Shades each lane, collects those that go on, and brings home what lights send.
     fn shade(&mut self, batch: &Batch<E::State>) {
         let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
         let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
+        let (mut start, shadows_before) = (Instant::now(), stats.times.shadow);
         let mut surfaces = std::mem::take(&mut self.surfaces);
         let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
         let packets = batch.rays.packets().iter().zip(&hits);
@@ -201,6 +218,8 @@ impl<'s, E: Estimator> Wave<'s, E> {
         }
         stage.finish_batch();
         stage.flush_shadows(&mut stats);
+        lap(&mut start, &mut stats.times.shade);
+        stats.times.shade -= stats.times.shadow - shadows_before;
         (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
     }
 }
