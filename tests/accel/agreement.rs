@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::rays::RayMaker;
 use crate::rng::{Rng, hash};
-use crate::{configurations, intersect, is_full, occluded, worlds};
+use crate::{backends, configurations, intersect, is_full, occluded, worlds};
 
 /// Rays in one task.
 const BATCH: usize = 4096;
@@ -118,7 +118,7 @@ impl Court<'_> {
 }
 
 fn try_world(name: &str, world: &Arc<World>, filter: Option<&dyn HitFilter>, rays: usize, seed: u64) -> Count {
-    try_backends(name, world, configurations(world), filter, rays, seed)
+    try_backends(name, world, backends(world), filter, rays, seed)
 }
 
 fn try_backends(
@@ -169,6 +169,17 @@ fn backends_answer_what_the_judge_allows() {
     // the ambiguous: all backends agree about them.
     let judged = if is_full() { total.rays } else { total.judged };
     assert!(2 * total.ambiguous < judged, "{} rays are ambiguous", total.ambiguous);
+}
+
+/// Builds of every quality and every call.
+#[test]
+fn every_configuration_answers_what_the_judge_allows() {
+    let worlds = worlds::all();
+    let rays = if is_full() { 10_000_000 } else { 60_000 } / worlds.len();
+    for (seed, (name, world)) in worlds.iter().enumerate() {
+        let total = try_backends(name, world, configurations(world), None, rays, 50 + seed as u64);
+        assert_eq!(total.wrong, 0, "{name}");
+    }
 }
 
 #[test]

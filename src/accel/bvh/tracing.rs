@@ -61,7 +61,10 @@ impl Tracing {
             let ways: &[Way] = match instructions {
                 Instructions::Portable(_) => &[Way::Single],
                 #[cfg(target_arch = "x86_64")]
-                _ => &[Way::Packets, Way::Interleaved, Way::Single],
+                Instructions::Avx2(_) => &[Way::Packets, Way::Interleaved, Way::Single],
+                // A ray by itself has no use for as many lanes.
+                #[cfg(target_arch = "x86_64")]
+                Instructions::Avx512(..) => &[Way::Packets, Way::Interleaved],
             };
             ways.iter().map(move |&way| (instructions, way))
         };
