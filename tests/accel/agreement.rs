@@ -144,7 +144,9 @@ fn try_backends(
         .into_par_iter()
         .map(|batch| {
             let rng = &mut Rng::new(hash(seed << 32 | batch as u64));
-            let rays: Vec<Ray> = (0..BATCH).map(|i| maker.ray(rng, (batch * BATCH + i) as u32)).collect();
+            let rays: Vec<Ray> = (0..BATCH.min(rays))
+                .map(|i| maker.ray(rng, (batch * BATCH + i) as u32))
+                .collect();
             court.try_rays(&rays)
         })
         .collect();
