@@ -2,7 +2,7 @@
 
 use super::sides::Sides;
 use super::{
-    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Principled, ThinDielectric,
 };
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
@@ -157,6 +157,7 @@ pub enum Lobe<'a> {
     Layered(Layered),
     Principled(Principled<'a>),
     Measured(Measured<'a>),
+    Hair(Hair),
 }
 
 // The commonest lobe is where it is asked for, the others are calls away: together they would push its numbers out of registers.
@@ -179,6 +180,7 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.eval(wo, wi, mode),
             Self::Principled(lobe) => lobe.eval(wo, wi, mode),
             Self::Measured(lobe) => lobe.eval(wo, wi),
+            Self::Hair(lobe) => lobe.eval(wo, wi),
             Self::Conductor(lobe) => lobe.eval(wo, wi),
             Self::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }
@@ -202,6 +204,7 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Measured(lobe) => lobe.sample_f(wo, u),
+            Self::Hair(lobe) => lobe.sample_f(wo, u_lobe, u),
             Self::Conductor(lobe) => lobe.sample_f(wo, u),
             Self::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }
@@ -257,7 +260,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::Principled(_)
-            | Lobe::Measured(_) => false,
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
@@ -279,9 +283,11 @@ impl<'a> Bsdf<'a> {
                 Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => {
                     false
                 }
-                Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => {
-                    true
-                }
+                Lobe::DiffuseTransmission(_)
+                | Lobe::Dielectric(_)
+                | Lobe::ThinDielectric(_)
+                | Lobe::Principled(_)
+                | Lobe::Hair(_) => true,
             }
     }
 
@@ -297,7 +303,11 @@ impl<'a> Bsdf<'a> {
     /// is then better followed on its way than looked for from here; photon maps keep nothing of it.
     pub fn is_specular(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Measured(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_specular(),
@@ -327,7 +337,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
             | Lobe::Principled(_)
-            | Lobe::Measured(_) => false,
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
         }
     }
 

@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
-use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc};
+use crate::desc::{
+    CoatDesc, ConductorDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc,
+};
 use crate::material::{
-    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PrincipledMaterial, PrincipledTables, Relief,
+    Coat, ConductorIor, HairColor, HairMaterial, Material, MeasuredTables, MixMaterial, PrincipledMaterial,
+    PrincipledTables, Relief,
 };
 
 /// All materials of a scene, by their ids.
@@ -98,6 +101,8 @@ impl MaterialCompiler<'_, '_> {
             MaterialKind::Measured(desc) => {
                 Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
             }
+            MaterialKind::Hair(desc) => Material::Hair(Arc::new(hair(desc, self.textures))),
+            MaterialKind::Interface => Material::Interface,
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),
@@ -125,6 +130,25 @@ fn coating(desc: &CoatDesc, textures: &mut TextureCompiler<'_>) -> Coat {
         g: textures.float(&desc.g),
         max_depth: desc.max_depth,
         samples: desc.samples,
+    }
+}
+
+fn hair(desc: &HairDesc, textures: &mut TextureCompiler<'_>) -> HairMaterial {
+    // What a unit of the brown and of the red pigment absorbs (d'Eon et al. 2011, as in pbrt-v4).
+    const PIGMENTS: [[f32; 3]; 2] = [[0.419, 0.697, 1.37], [0.187, 0.4, 1.05]];
+    HairMaterial {
+        color: match &desc.color {
+            HairColorDesc::Absorption(sigma) => HairColor::Absorption(textures.spectrum(sigma, SpectrumUse::Unbounded)),
+            HairColorDesc::Reflectance(color) => HairColor::Reflectance(textures.spectrum(color, SpectrumUse::Albedo)),
+            HairColorDesc::Pigments { eumelanin, pheomelanin } => {
+                let [brown, red] = PIGMENTS.map(|rgb| textures.spectra.absorption_of_rgb(rgb));
+                HairColor::Pigments([(textures.float(eumelanin), brown), (textures.float(pheomelanin), red)])
+            }
+        },
+        eta: desc.eta,
+        beta_m: textures.float(&desc.beta_m),
+        beta_n: textures.float(&desc.beta_n),
+        alpha: textures.float(&desc.alpha),
     }
 }
 

@@ -105,7 +105,7 @@ fn visit(tree: &FixedTree, node: usize, found: &mut Vec<u32>) {
                         .map(|(id, _)| *id),
                 );
             }
-            Child::Sphere(_) | Child::Instance(_) => {}
+            Child::Analytic(_) | Child::Instance(_) => {}
         }
     }
 }

@@ -11,7 +11,7 @@ use super::ploc;
 use super::ray::MARGIN;
 use super::spatial::Corners;
 use crate::accel::BuildQuality;
-use crate::geometry::{GeometryId, PrimitiveId, Shape, Sphere, TriangleMesh, World};
+use crate::geometry::{GeometryId, PrimitiveId, Shape, TriangleMesh, World};
 use crate::math::{Bounds3, Vec3};
 
 /// A tree of 8-wide nodes; the root is the first.
@@ -22,11 +22,11 @@ pub struct Tree<N, B> {
     pub nodes: Vec<N>,
     /// Leaves of triangles.
     pub blocks: Vec<B>,
-    /// Leaves of one sphere each.
-    pub spheres: Vec<(GeometryId, PrimitiveId)>,
+    /// Leaves of one primitive each, those that are no triangles.
+    pub analytic: Vec<(GeometryId, PrimitiveId)>,
 }
 
-/// A tree of what does not move: triangles, spheres, and instances by the box of all that they sweep.
+/// A tree of what does not move: triangles, other primitives, and instances by the box of all that they sweep.
 pub type FixedTree = Tree<FixedNode, FixedBlock>;
 
 /// A tree of triangles whose vertices move, over one segment of time.
@@ -50,7 +50,7 @@ pub struct GroupTrees {
 
 impl<N, B> Tree<N, B> {
     fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice()) + size_of_val(self.spheres.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice()) + size_of_val(self.analytic.as_slice())
     }
 }
 
@@ -58,7 +58,7 @@ impl<N, B> Tree<N, B> {
 pub fn mesh(world: &World, id: GeometryId) -> Option<&TriangleMesh> {
     match &world.geometry(id).shape {
         Shape::Mesh(mesh) => Some(mesh),
-        Shape::Spheres(_) => None,
+        _ => None,
     }
 }
 
@@ -117,27 +117,27 @@ fn fixed_tree(
     quality: BuildQuality,
 ) -> Option<FixedTree> {
     let mut names = Vec::new();
-    let mut spheres = Vec::new();
+    let mut analytic = Vec::new();
     let mut boxes = Vec::new();
     for &id in members {
-        match &world.geometry(id).shape {
-            Shape::Mesh(mesh) if mesh.is_moving() => {}
-            Shape::Mesh(mesh) => {
-                let bounds = (0..mesh.triangle_count()).into_par_iter();
-                boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
-                names.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
-            }
-            Shape::Spheres(_) => {}
+        if let Shape::Mesh(mesh) = &world.geometry(id).shape
+            && !mesh.is_moving()
+        {
+            let bounds = (0..mesh.triangle_count()).into_par_iter();
+            boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
+            names.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }
     for &id in members {
-        if let Shape::Spheres(shapes) = &world.geometry(id).shape {
-            boxes.extend(shapes.iter().map(Sphere::bounds));
-            spheres.extend((0..shapes.len()).map(|i| (id, PrimitiveId::from_index(i))));
+        let shape = &world.geometry(id).shape;
+        if shape.is_analytic() {
+            let bounds = (0..shape.primitive_count()).into_par_iter();
+            boxes.par_extend(bounds.map(|i| shape.primitive_bounds(i)));
+            analytic.extend((0..shape.primitive_count()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }
     boxes.extend_from_slice(instances);
-    let first_instance = names.len() + spheres.len();
+    let first_instance = names.len() + analytic.len();
     let triangles = Triangles { world, names: &names };
     let (tree, items) = binary(boxes, names.len(), quality, Some(&triangles))?;
 
@@ -147,7 +147,7 @@ fn fixed_tree(
         let first = items[0].index() as usize;
         if first >= names.len() {
             let child = if first < first_instance {
-                Child::Sphere(first - names.len())
+                Child::Analytic(first - names.len())
             } else {
                 Child::Instance(first - first_instance)
             };
@@ -174,7 +174,7 @@ fn fixed_tree(
         bounds: tree.bounds,
         nodes,
         blocks: leaves.par_iter().with_min_len(256).map(block).collect(),
-        spheres,
+        analytic,
     })
 }
 
@@ -252,7 +252,7 @@ fn moving_tree(
         bounds: tree.bounds,
         nodes,
         blocks,
-        spheres: Vec::new(),
+        analytic: Vec::new(),
     }
 }
 
