@@ -95,7 +95,10 @@ pub fn cost(bounds: &Box4, count: usize) -> f64 {
     bounds.half_area() * count.div_ceil(LANES) as f64
 }
 
-type Histogram = [[Bin; MOST]; 3];
+type Histogram<const N: usize> = [[Bin; N]; 3];
+
+/// Bins along an axis that are enough for few items: most nodes have few, and their histograms are to stay small.
+const FEW: usize = 8;
 
 /// Boxes around items and around their centres.
 pub fn extent_of(items: &[Item]) -> Extent {
@@ -113,7 +116,15 @@ pub fn extent_of(items: &[Item]) -> Extent {
 pub fn best_split(items: &[Item], extent: &Extent, bins: usize) -> Option<Split> {
     // Few items do not need many bins.
     let grid = Grid::new(extent, bins.min(4 + items.len() / 8));
-    let histogram = histogram(items, &grid);
+    if grid.bins <= FEW {
+        best_of::<FEW>(items, &grid)
+    } else {
+        best_of::<MOST>(items, &grid)
+    }
+}
+
+fn best_of<const N: usize>(items: &[Item], grid: &Grid) -> Option<Split> {
+    let histogram = histogram::<N>(items, grid);
     let mut best = None;
     let mut least = f64::INFINITY;
     for (axis, bins) in histogram.iter().enumerate() {
@@ -122,26 +133,25 @@ pub fn best_split(items: &[Item], extent: &Extent, bins: usize) -> Option<Split>
         }
         let bins = &bins[..grid.bins];
         // All bins from each on, then a sweep from the other side.
-        let mut above = [Bin::EMPTY; MOST];
-        let mut above_costs = [0.0; MOST];
+        let mut above = [(Box4::EMPTY, 0.0); N];
         let mut upper = Bin::EMPTY;
         for bin in (1..bins.len()).rev() {
             upper = upper.union(bins[bin]);
-            above[bin] = upper;
-            above_costs[bin] = upper.cost();
+            above[bin] = (upper.bounds, upper.cost());
         }
         let mut lower = Bin::EMPTY;
         for bin in 1..bins.len() {
             lower = lower.union(bins[bin - 1]);
-            let cost = lower.cost() + above_costs[bin];
+            let (upper, upper_cost) = above[bin];
+            let cost = lower.cost() + upper_cost;
             if lower.count > 0 && lower.count < items.len() && cost < least {
                 least = cost;
                 best = Some(Split {
                     axis,
                     bin,
-                    grid,
+                    grid: *grid,
                     cost,
-                    overlap: lower.bounds.intersection(above[bin].bounds).half_area(),
+                    overlap: lower.bounds.intersection(upper).half_area(),
                 });
             }
         }
@@ -149,9 +159,9 @@ pub fn best_split(items: &[Item], extent: &Extent, bins: usize) -> Option<Split>
     best
 }
 
-fn histogram(items: &[Item], grid: &Grid) -> Histogram {
+fn histogram<const N: usize>(items: &[Item], grid: &Grid) -> Histogram<N> {
     let of_chunk = |chunk: &[Item]| {
-        let mut histogram = [[Bin::EMPTY; MOST]; 3];
+        let mut histogram = [[Bin::EMPTY; N]; 3];
         for item in chunk {
             let places = grid.bins(item.center());
             for (bins, place) in histogram.iter_mut().zip(places) {
@@ -166,7 +176,7 @@ fn histogram(items: &[Item], grid: &Grid) -> Histogram {
         return of_chunk(items);
     }
     items.par_chunks(CHUNK).map(of_chunk).reduce(
-        || [[Bin::EMPTY; MOST]; 3],
+        || [[Bin::EMPTY; N]; 3],
         |a, b| std::array::from_fn(|axis| std::array::from_fn(|bin| a[axis][bin].union(b[axis][bin]))),
     )
 }

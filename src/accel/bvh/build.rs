@@ -148,7 +148,8 @@ impl Builder<'_> {
     ) -> Option<Divided> {
         let corners = self.params.corners?;
         let room = items.len() - count;
-        if room == 0 || count <= LANES || split.is_some_and(|split| split.overlap <= self.least_overlap) {
+        let least_overlap = self.least_overlap.max(extent.bounds.half_area() * spatial::LEAST_SHARE);
+        if room == 0 || count <= LANES || split.is_some_and(|split| split.overlap <= least_overlap) {
             return None;
         }
         let plane: Plane = spatial::best_plane(&items[..count], extent, corners)?;

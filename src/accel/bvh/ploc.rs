@@ -1,15 +1,17 @@
 //! A binary tree in little time: parallel locally-ordered clustering (Meister and Bittner 2018, "Parallel Locally-Ordered Clustering for
 //! Bounding Volume Hierarchy Construction").
 //!
-//! Items are sorted along a Morton curve. Each cluster (at first each item) looks for the neighbour on the curve with which it shares the
-//! box of least area; two that find each other become one, until one is left. The tree is a function of the items alone.
+//! Items are sorted along a Morton curve, and those that are in one cell of the curve, up to a block of them, make a leaf, as in a linear
+//! BVH (Lauterbach et al. 2009, "Fast BVH Construction on GPUs"). Each cluster (at first each leaf) looks for the neighbour on the curve with which it
+//! shares the box of least area; two that find each other become one, until one is left. The tree is a function of the items alone.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::bins::extent_of;
-use super::build::{Binary, Content, LEAST_PARALLEL, MOST_LEVELS};
+use super::build::{Binary, Content, LEAST_PARALLEL, MOST_LEVELS, is_leaf};
 use super::item::{Box4, Extent, Item};
-use super::leaf::LANES;
 use crate::math::Vec3;
 
 /// How far along the curve a cluster looks, to either side.
@@ -18,14 +20,21 @@ const RADIUS: usize = 8;
 /// Clusters that one task takes at a time.
 const CHUNK: usize = 4096;
 
-/// Rounds after which it is given up: of usual items a third is left after each.
+/// Rounds after which it is given up: of usual clusters two thirds are left after each.
 const MOST_ROUNDS: usize = 200;
 
 #[derive(Clone, Copy)]
 struct Cluster {
     bounds: Box4,
-    /// A place among the items, or, from their number on, among the pairs.
+    /// A place among the leaves, or, from their number on, among the pairs.
     node: u32,
+}
+
+/// Items that are neighbours on the curve.
+#[derive(Clone, Copy)]
+struct Leaf {
+    first: u32,
+    count: u32,
 }
 
 /// Two clusters that became one.
@@ -33,29 +42,28 @@ struct Cluster {
 struct Pair {
     bounds: Box4,
     children: [u32; 2],
-    items: u32,
+    leaves: u32,
     levels: u32,
-    /// Whether all are triangles.
-    triangles: bool,
 }
 
-/// Builds a tree over `items`, of which there is at least one, and puts them into the order of its leaves. `None` if the tree would be too
-/// deep, or take too long, for boxes of unusual sizes; the items are then in some other order. Of the rest of the arguments see
-/// [`BuildParams`](super::build::BuildParams).
+/// Builds a tree over `items`, of which there is at least one, and puts them into another order. `None` if the tree would be too deep, or
+/// take too long, for boxes of unusual sizes. Of `triangles` see [`BuildParams`](super::build::BuildParams).
 pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<Binary> {
-    sort(items);
-    let mut clusters: Vec<Cluster> = items
+    let codes = sort(items);
+    let mut leaves = Vec::with_capacity(items.len() / 2);
+    divide(items, &codes, 0..items.len(), triangles, &mut leaves);
+    let mut clusters: Vec<Cluster> = leaves
         .iter()
         .enumerate()
-        .map(|(place, item)| Cluster {
-            bounds: item.box4(),
+        .map(|(place, leaf)| Cluster {
+            bounds: bounds_of(items, *leaf),
             node: place as u32,
         })
         .collect();
     let mut tree = Tree {
         items,
-        triangles,
-        pairs: Vec::with_capacity(items.len()),
+        leaves,
+        pairs: Vec::with_capacity(clusters.len()),
     };
     let mut rounds = 0;
     while clusters.len() > 1 {
@@ -67,18 +75,20 @@ pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<Binary> {
         }
     }
     let root = clusters.first()?.node;
-    if tree.levels(root) > MOST_LEVELS {
-        return None;
-    }
-    let mut order = vec![0; items.len()];
-    let tree = Tree { items, ..tree };
-    let binary = tree.binary(root, 0, &mut order);
-    *items = order.iter().map(|&place| items[place as usize]).collect();
-    Some(binary)
+    (tree.levels(root) <= MOST_LEVELS).then(|| tree.binary(root))
 }
 
-/// Sorts items along a Morton curve through the box of their centres.
-fn sort(items: &mut Vec<Item>) {
+fn range_of(leaf: Leaf) -> Range<usize> {
+    leaf.first as usize..(leaf.first + leaf.count) as usize
+}
+
+fn bounds_of(items: &[Item], leaf: Leaf) -> Box4 {
+    let boxes = items[range_of(leaf)].iter().map(Item::box4);
+    boxes.fold(Box4::EMPTY, Box4::union)
+}
+
+/// Sorts items along a Morton curve through the box of their centres, and returns their codes.
+fn sort(items: &mut Vec<Item>) -> Vec<u64> {
     let extent: Extent = extent_of(items);
     let cells = (1u32 << 21) as f32 * (1.0 - f32::EPSILON) / extent.spread();
     let scale = Vec3::select(cells.cmplt(Vec3::INFINITY), cells, Vec3::ZERO);
@@ -93,6 +103,29 @@ fn sort(items: &mut Vec<Item>) {
         .collect();
     keys.par_sort_unstable();
     *items = keys.par_iter().map(|&(_, place)| items[place as usize]).collect();
+    keys.into_iter().map(|(code, _)| code).collect()
+}
+
+/// Divides a range of sorted items where their codes first differ, or in the middle if they do not, down to leaves.
+fn divide(items: &[Item], codes: &[u64], range: Range<usize>, triangles: u32, leaves: &mut Vec<Leaf>) {
+    if is_leaf(&items[range.clone()], triangles) {
+        leaves.push(Leaf {
+            first: range.start as u32,
+            count: range.len() as u32,
+        });
+        return;
+    }
+    let (first, last) = (codes[range.start], codes[range.end - 1]);
+    let middle = if first == last {
+        range.start + range.len() / 2
+    } else {
+        // All codes from the first with the highest bit in which they differ.
+        let bit = 63 - (first ^ last).leading_zeros();
+        let border = last >> bit << bit;
+        range.start + codes[range.clone()].partition_point(|&code| code < border)
+    };
+    divide(items, codes, range.start..middle, triangles, leaves);
+    divide(items, codes, middle..range.end, triangles, leaves);
 }
 
 /// Interleaves the lowest 21 bits of three numbers.
@@ -153,14 +186,14 @@ fn nearest(clusters: &[Cluster]) -> Vec<u32> {
 
 struct Tree<'a> {
     items: &'a [Item],
-    triangles: u32,
+    leaves: Vec<Leaf>,
     pairs: Vec<Pair>,
 }
 
 impl Tree<'_> {
     fn pair(&self, node: u32) -> Option<&Pair> {
         (node as usize)
-            .checked_sub(self.items.len())
+            .checked_sub(self.leaves.len())
             .map(|place| &self.pairs[place])
     }
 
@@ -168,15 +201,8 @@ impl Tree<'_> {
         self.pair(node).map_or(1, |pair| pair.levels)
     }
 
-    fn count(&self, node: u32) -> u32 {
-        self.pair(node).map_or(1, |pair| pair.items)
-    }
-
-    fn is_of_triangles(&self, node: u32) -> bool {
-        self.pair(node).map_or_else(
-            || self.items[node as usize].index() < self.triangles,
-            |pair| pair.triangles,
-        )
+    fn leaves(&self, node: u32) -> u32 {
+        self.pair(node).map_or(1, |pair| pair.leaves)
     }
 
     /// Puts clusters together that found each other; the others stay.
@@ -191,62 +217,37 @@ impl Tree<'_> {
                 let children = [cluster.node, clusters[other].node];
                 next.push(Cluster {
                     bounds,
-                    node: (self.items.len() + self.pairs.len()) as u32,
+                    node: (self.leaves.len() + self.pairs.len()) as u32,
                 });
                 self.pairs.push(Pair {
                     bounds,
                     children,
-                    items: children.iter().map(|&child| self.count(child)).sum(),
+                    leaves: children.iter().map(|&child| self.leaves(child)).sum(),
                     levels: 1 + children.iter().map(|&child| self.levels(child)).fold(0, u32::max),
-                    triangles: children.iter().all(|&child| self.is_of_triangles(child)),
                 });
             }
         }
         next
     }
 
-    /// The tree below a node, whose leaves hold the items named in `order`, the first of them being at `first` among all.
-    fn binary(&self, node: u32, first: usize, order: &mut [u32]) -> Binary {
+    /// The tree below a node.
+    fn binary(&self, node: u32) -> Binary {
         let Some(pair) = self.pair(node) else {
-            order[0] = node;
+            let leaf = self.leaves[node as usize];
             return Binary {
-                bounds: self.items[node as usize].box4().bounds(),
-                content: Content::Leaf(first..first + 1),
+                bounds: bounds_of(self.items, leaf).bounds(),
+                content: Content::Leaf(range_of(leaf)),
             };
         };
-        let bounds = pair.bounds.bounds();
-        if pair.items as usize <= LANES && pair.triangles {
-            self.list(node, &mut order.iter_mut());
-            return Binary {
-                bounds,
-                content: Content::Leaf(first..first + pair.items as usize),
-            };
-        }
         let [left, right] = pair.children;
-        let count = self.count(left) as usize;
-        let (left_order, right_order) = order.split_at_mut(count);
-        let mut build_left = || self.binary(left, first, left_order);
-        let mut build_right = || self.binary(right, first + count, right_order);
-        let children = if pair.items as usize > LEAST_PARALLEL {
-            rayon::join(build_left, build_right)
+        let children = if pair.leaves as usize > LEAST_PARALLEL {
+            rayon::join(|| self.binary(left), || self.binary(right))
         } else {
-            (build_left(), build_right())
+            (self.binary(left), self.binary(right))
         };
         Binary {
-            bounds,
+            bounds: pair.bounds.bounds(),
             content: Content::Inner(Box::new(children.into())),
-        }
-    }
-
-    /// Writes down the items below a node.
-    fn list<'o>(&self, node: u32, order: &mut impl Iterator<Item = &'o mut u32>) {
-        match self.pair(node) {
-            Some(pair) => pair.children.iter().for_each(|&child| self.list(child, order)),
-            None => {
-                if let Some(place) = order.next() {
-                    *place = node;
-                }
-            }
         }
     }
 }

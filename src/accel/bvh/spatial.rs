@@ -17,6 +17,9 @@ const BINS: usize = 16;
 /// al. 2009, section 4.5).
 pub const LEAST_OVERLAP: f64 = 1e-5;
 
+/// Nor where they have less than this part of the area of the node in common, as little is to be gained there.
+pub const LEAST_SHARE: f64 = 0.1;
+
 /// The corners of the triangles that may be split.
 pub trait Corners: Sync {
     /// Those of the item of this index; `None` if it is not to be split.
