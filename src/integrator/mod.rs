@@ -32,6 +32,7 @@ mod photon;
 mod schedule;
 mod shadow;
 mod stage;
+mod times;
 mod volume;
 mod wave;
 
@@ -46,6 +47,7 @@ pub use path::PathIntegrator;
 pub use photon::{KdTree, Nearest};
 pub use photon::{Limits, PhotonCount, PhotonIntegrator, ShownMap, SppmIntegrator};
 pub use schedule::{Progress, Silent};
+pub use times::StageTimes;
 
 use crate::desc::{
     Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc, Strategy,
@@ -302,12 +304,14 @@ impl Integrator {
 pub struct RenderStats {
     /// Wall-clock time of the render.
     pub render_time: Duration,
-    /// Time inside the backend, summed over threads.
-    pub backend_time: Duration,
+    /// Where the threads' time went.
+    pub times: StageTimes,
     /// Rays from the camera.
     pub camera_rays: u64,
-    /// Rays scattered by surfaces.
+    /// Rays scattered by surfaces, on the way from the camera.
     pub bounce_rays: u64,
+    /// Rays on the way from lights.
+    pub photon_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
     /// The samples of each pixel that were rendered, if fewer than were planned.
@@ -337,14 +341,15 @@ const DROPPED_KEPT: usize = 16;
 impl RenderStats {
     /// All rays.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.bounce_rays + self.shadow_rays
+        self.camera_rays + self.bounce_rays + self.photon_rays + self.shadow_rays
     }
 
     /// Adds what another thread did.
     fn merge(&mut self, other: Self) {
-        self.backend_time += other.backend_time;
+        self.times += other.times;
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
+        self.photon_rays += other.photon_rays;
         self.shadow_rays += other.shadow_rays;
         self.caustic_photons += other.caustic_photons;
         self.global_photons += other.global_photons;

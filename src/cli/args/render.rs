@@ -142,6 +142,13 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
 
+    /// Say where the time went, and how much of it the fastest backend would need for the same rays
+    ///
+    /// By kind of ray, shading, sampling and film; printed, and put into the statistics. Some of the rays are recorded in a short second render
+    /// and traced by every way that each backend has.
+    #[arg(long)]
+    pub profile: bool,
+
     /// Write events to stdout, a JSON object a line
     ///
     /// {"event": "progress", "scene", "camera", "done" (0 to 1), "seconds_left"}, {"event": "result", "scene", "camera", and the
