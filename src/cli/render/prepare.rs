@@ -87,7 +87,7 @@ impl Job<'_> {
         if let Some(missed) = integrator.blind_spot(&scene) {
             reporter.say(&format!("warning: {missed}"));
         }
-        if scene.lights().is_empty() {
+        if scene.lights().is_empty() && integrator.needs_lights() {
             reporter.say(&format!(
                 "warning: {} has no lights: its picture is black",
                 path.display()

@@ -162,7 +162,7 @@ impl Options {
 
     /// The integrator; by default path tracing with 5 bounces.
     pub fn integrator(&self) -> IntegratorDesc {
-        self.integrator.clone().unwrap_or_else(integrator::default)
+        self.integrator.clone().unwrap_or_default()
     }
 }
 

@@ -61,7 +61,14 @@ pub(super) fn integrator(old: &mut Old<'_>, kind: &mut String) {
             old.take("strategy");
             old.add(ParamType::Integer, "maxdepth", Values::Integers(vec![1]), old.span);
         }
-        "ao" => "ambientocclusion".clone_into(kind),
+        "ao" => {
+            "ambientocclusion".clone_into(kind);
+            old.note("the integrator `ao` is `ambientocclusion` in pbrt-v4");
+            old.drop(
+                "nsamples",
+                "the `nsamples` of ambient occlusion have no effect: the sampler's count",
+            );
+        }
         "whitted" => {
             let message = "the integrator `whitted` of pbrt-v3 has no counterpart";
             old.refuse(old.span, message, "`path` is used");
