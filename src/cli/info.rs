@@ -21,6 +21,8 @@ struct SceneInfo {
     meshes: usize,
     triangles: u64,
     spheres: u64,
+    quadrics: u64,
+    patches: u64,
     instances: usize,
     instanced_primitives: u64,
     bounds_min: [f32; 3],
@@ -78,7 +80,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 impl SceneInfo {
     fn new(name: &str, desc: &SceneDesc, scene: &Scene) -> Self {
         let world = scene.world();
-        let (mut meshes, mut triangles, mut spheres) = (0, 0, 0);
+        let (mut meshes, mut triangles, mut spheres, mut quadrics, mut patches) = (0, 0, 0, 0, 0);
         for geometry in world.geometries() {
             match &geometry.shape {
                 Shape::Mesh(mesh) => {
@@ -86,6 +88,8 @@ impl SceneInfo {
                     triangles += mesh.triangle_count() as u64;
                 }
                 Shape::Spheres(list) => spheres += list.len() as u64,
+                Shape::Quadrics(list) => quadrics += list.len() as u64,
+                Shape::Patches(mesh) => patches += mesh.patch_count() as u64,
             }
         }
         let bounds = scene.bounds();
@@ -101,6 +105,8 @@ impl SceneInfo {
             meshes,
             triangles,
             spheres,
+            quadrics,
+            patches,
             instances: world.instances().len(),
             instanced_primitives: world.instanced_primitive_count(),
             bounds_min: bounds.min.to_array(),
@@ -180,8 +186,8 @@ impl std::fmt::Display for SceneInfo {
         }
         writeln!(
             f,
-            "  shapes      {} meshes of {} triangles, {} spheres",
-            self.meshes, self.triangles, self.spheres
+            "  shapes      {} meshes of {} triangles, {} spheres, {} other quadrics, {} patches",
+            self.meshes, self.triangles, self.spheres, self.quadrics, self.patches
         )?;
         writeln!(
             f,

@@ -4,7 +4,7 @@
 //! transforms are matrices, materials and lights are names with parameters already checked for type and range. The scene builder
 //! turns a description into things that rays can meet.
 //!
-//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]). Lucerna's extensions to pbrt-v4:
+//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]); meshes in OBJ ([`obj`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -23,6 +23,7 @@ mod light;
 mod material;
 mod measured_media;
 mod medium;
+pub mod obj;
 pub mod pbrt;
 pub mod ply;
 pub mod rgl;
@@ -53,7 +54,7 @@ pub use material::{
 };
 pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
-pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
+pub use shape::{DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,

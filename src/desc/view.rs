@@ -47,8 +47,8 @@ pub struct CameraDesc {
     pub shutter: [f64; 2],
     /// What it stands in; `None` is the vacuum.
     pub medium: Option<MediumId>,
-    /// The inverse of pbrt's current transform at the `Camera` directive.
-    pub world_from_camera: MotionDesc,
+    /// pbrt's current transform at the `Camera` directive.
+    pub camera_from_world: MotionDesc,
 }
 
 /// The shape of the opening of a thin lens.
@@ -129,6 +129,11 @@ pub enum StopShape {
 }
 
 impl CameraDesc {
+    /// Where it stands and looks.
+    pub fn world_from_camera(&self) -> MotionDesc {
+        self.camera_from_world.inverse()
+    }
+
     /// `[x_min, x_max, y_min, y_max]` of the picture on the screen plane: what the file says, else -1 to 1 along the shorter side
     /// and the aspect ratio along the other.
     pub fn screen_window(&self, resolution: [u32; 2]) -> [f64; 4] {
@@ -147,7 +152,7 @@ impl CameraDesc {
 }
 
 /// What the picture is taken on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FilmDesc {
     /// Width and height in pixels, neither 0. Default 1280 by 720.
     pub resolution: [u32; 2],
@@ -178,6 +183,16 @@ pub struct FilmDesc {
 }
 
 impl FilmDesc {
+    /// Whether another film is the same, wherever it is described and however long the shutter of its camera is open.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let placed = Self {
+            span: self.span,
+            exposure_time: self.exposure_time,
+            ..other.clone()
+        };
+        *self == placed
+    }
+
     /// What the sensor multiplies radiance by: `exposure_time * iso / 100`, as in pbrt-v4. It is 1 by default.
     pub fn imaging_ratio(&self) -> f64 {
         self.exposure_time * self.iso / 100.0

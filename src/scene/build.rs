@@ -140,7 +140,7 @@ impl SceneBuilder<'_> {
 
     /// Adds a shape's geometry and its lights; one that moves gets a group of its own and the instance that moves it.
     fn add_shape(&mut self, shape: &ShapeDesc) -> Option<(GeometryId, Option<Instance>)> {
-        let mut placed = match place(shape) {
+        let mut placed = match place(shape, &mut self.textures) {
             Ok(placed) => placed,
             Err(message) => {
                 self.problem(shape.span, message);

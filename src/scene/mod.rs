@@ -8,6 +8,7 @@ mod materials;
 mod media;
 mod shapes;
 mod spectra;
+mod tessellate;
 mod textures;
 mod view;
 

@@ -168,7 +168,7 @@ fn camera(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<Cam
     let camera = &view.camera;
     let [start, end] = desc.transform_times;
     let shutter = camera.shutter.map(|time| (time - start) / (end - start));
-    let world_from_camera = animated(&camera.world_from_camera)?;
+    let world_from_camera = animated(&camera.world_from_camera())?;
     let projection = match &camera.kind {
         &CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
         CameraKind::Orthographic => Projection::Orthographic,

@@ -17,6 +17,7 @@ mod lights;
 mod media;
 mod motion;
 mod occlusion;
+mod shapes;
 mod wavelengths;
 
 use common::effort;

@@ -27,7 +27,9 @@ fn a_floor_beside_a_wall_sees_its_share_of_the_sky() {
         "\"bool cossample\" true",
         "\"bool cossample\" false \"float maxdistance\" 1e6",
     ] {
-        check(sampling, &corner(sampling), 256, [1, 8], &COLUMNS, |_| expected.clone());
+        check(sampling, &corner(sampling), 1024, [1, 8], &COLUMNS, |_| {
+            expected.clone()
+        });
     }
     // What is farther away than 0.1 does not count. From x the wall is nearer in the part of the disk under the hemisphere that is beyond
     // x / 0.1: (acos c - c sqrt(1 - c²)) / pi, on average over c in [0, 1] two thirds of one over pi.

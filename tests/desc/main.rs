@@ -7,11 +7,14 @@ mod lights;
 mod materials;
 mod media;
 mod mutations;
+mod obj;
 mod options;
 mod ply;
+mod shapes;
 mod tables;
 mod v3;
 mod world;
+mod written;
 
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lucerna::desc::{ParseOptions, pbrt, ply};
+use lucerna::desc::{ParseOptions, obj, pbrt, ply};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
@@ -173,6 +173,33 @@ fn no_bytes_make_the_mesh_reader_panic() {
             .map_or(0, |i| i + 11);
         let start = if round % 2 == 0 { header } else { 0 };
         refused += usize::from(ply::parse(&mutate(file, start, &mut random)).is_err());
+    }
+    assert!((3000..11_500).contains(&refused), "{refused} refused");
+}
+
+#[test]
+fn no_text_makes_the_obj_reader_panic() {
+    let file = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0 1\nv 0 1 \\\n 0\nvt 0 1\nvn 0 0 1\nusemtl x\nf 1/1/1 2//1 -1/-1\nusemtl y\nf 1 2 3 1\n";
+    let parse = |bytes: &[u8]| obj::parse(bytes, Path::new("mesh.obj"));
+    assert!(parse(file).is_ok());
+    let mut random = Random(3);
+    let mut refused = 0;
+    for _ in 0..12_000 {
+        match parse(&mutate(file, 0, &mut random)) {
+            Ok(file) => {
+                file.warnings.iter().for_each(|w| drop(w.to_string()));
+                let triangles = file.mesh.indices.len();
+                let meshes = file.into_meshes();
+                assert_eq!(
+                    meshes.iter().map(|(_, mesh)| mesh.indices.len()).sum::<usize>(),
+                    triangles
+                );
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
     }
     assert!((3000..11_500).contains(&refused), "{refused} refused");
 }

@@ -26,7 +26,7 @@ fn defaults_are_those_of_pbrt() {
     assert_eq!(view.camera.lens_radius, 0.0);
     assert_eq!(view.camera.focal_distance, 1e6);
     assert_eq!(view.camera.shutter, [0.0, 1.0]);
-    assert_eq!(view.camera.world_from_camera, MotionDesc::IDENTITY);
+    assert_eq!(view.camera.world_from_camera(), MotionDesc::IDENTITY);
     assert_eq!(view.film.resolution, [1280, 720]);
     assert_eq!(view.film.crop, CropDesc::Full);
     assert_eq!(view.film.filename, None);
@@ -188,7 +188,7 @@ fn repeated_cameras_are_views_that_share_the_rest() {
     );
     let names: Vec<&str> = scene.views.iter().map(|v| v.name.as_str()).collect();
     assert_eq!(names, ["camera1", "side", "camera3"]);
-    let eye = |i: usize| scene.views[i].camera.world_from_camera.start.translation;
+    let eye = |i: usize| scene.views[i].camera.world_from_camera().start.translation;
     assert_eq!(eye(0), DVec3::new(0.0, 0.0, -5.0));
     assert_eq!(eye(1), DVec3::ZERO);
     assert!(scene.views.iter().all(|v| v.film.resolution == [10, 720]));
@@ -201,7 +201,7 @@ fn the_camera_is_where_look_at_puts_it() {
     let scene = scene(
         "LookAt 1 2 3  4 2 3  0 1 0 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\" Shape \"sphere\"",
     );
-    let world_from_camera = scene.views[0].camera.world_from_camera;
+    let world_from_camera = scene.views[0].camera.world_from_camera();
     assert!(world_from_camera.is_static());
     let at = |p| world_from_camera.start.transform_vector3(p);
     // It looks along +x with y up; pbrt's camera space is left-handed, so right is up x forward, towards -z.
@@ -217,7 +217,7 @@ fn a_camera_may_move() {
         "ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Scale 2 2 2
          Camera \"perspective\" WorldBegin",
     );
-    let motion = scene.views[0].camera.world_from_camera;
+    let motion = scene.views[0].camera.world_from_camera();
     assert!(!motion.is_static());
     // The inverse of a translation after a scale by 2.
     let half = |x, y| {

@@ -16,6 +16,7 @@ mod light_samplers;
 mod lights;
 mod measured;
 mod narrow;
+mod shapes;
 mod spherical;
 mod textured;
 

@@ -21,7 +21,7 @@ pub(super) struct NamedCamera {
 }
 
 /// The camera of a file without one.
-pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
+pub(super) fn default_camera(camera_from_world: MotionDesc) -> CameraDesc {
     CameraDesc {
         kind: CameraKind::Perspective {
             fov: 90.0,
@@ -34,7 +34,7 @@ pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
         aperture: ApertureDesc::Round,
         shutter: [0.0, 1.0],
         medium: None,
-        world_from_camera,
+        camera_from_world,
     }
 }
 
@@ -43,7 +43,7 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings
     let span = reader.span;
     let default = CameraDesc {
         medium: around.medium,
-        ..default_camera(around.ctm.inverse())
+        ..default_camera(around.ctm)
     };
     let kind = match kind {
         "perspective" => Some(CameraKind::Perspective {

@@ -200,9 +200,14 @@ fn resolve_shape(
         }
     }
     let kind = match shape.kind {
-        RawKind::Mesh(mesh) => ShapeKind::TriangleMesh(mesh),
-        RawKind::Pending(index) => ShapeKind::TriangleMesh(Arc::clone(&meshes[index])),
-        RawKind::Sphere { radius } => ShapeKind::Sphere { radius },
+        RawKind::Whole(kind) => kind,
+        RawKind::File { file, displacement } => {
+            let mesh = Arc::clone(&meshes[file]);
+            match displacement {
+                None => ShapeKind::TriangleMesh(mesh),
+                Some(displacement) => ShapeKind::DisplacedMesh { mesh, displacement },
+            }
+        }
     };
     Some(ShapeDesc {
         span: shape.span,

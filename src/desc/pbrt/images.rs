@@ -42,13 +42,14 @@ pub(super) fn read(pending: &PendingImages, context: &mut Context) -> Vec<ImageD
         .map(|(path, encoding, _)| read_one(path, *encoding))
         .collect();
     let mut images = Vec::with_capacity(read.len());
-    for ((path, _, span), outcome) in files.iter().zip(read) {
+    for ((path, encoding, span), outcome) in files.iter().zip(read) {
         match outcome {
             Ok((image, hash)) => {
                 context.count_hash(&hash);
                 check_color_space(&mut context.report, *span, path, &image);
                 images.push(ImageDesc {
                     path: path.clone(),
+                    encoding: *encoding,
                     image: Arc::new(image),
                 });
             }

@@ -177,9 +177,12 @@ impl ParamReader<'_> {
             let value = SpectrumValue::Rgb([1.0; 3], space);
             return (!given && space != ColorSpace::Srgb).then_some(SpectrumDesc { value, span });
         };
-        if let SpectrumValue::Samples(samples) = &spectrum.value
-            && samples.iter().all(|&(_, value)| value == 0.0)
-        {
+        let is_black = match &spectrum.value {
+            SpectrumValue::Samples(samples) => samples.iter().all(|&(_, value)| value == 0.0),
+            SpectrumValue::Constant(value) => *value == 0.0,
+            _ => false,
+        };
+        if is_black {
             let message = format!(
                 "`{name}` is 0 everywhere: it has no luminance to be scaled to (`\"rgb {name}\" [0 0 0]` is black)"
             );

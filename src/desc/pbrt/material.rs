@@ -315,7 +315,7 @@ fn measured(reader: &mut ParamReader<'_>) -> Option<MeasuredDesc> {
     let path = reader.context.resolve(&file, span);
     let read = reader.context.read_text(&path).map_err(|e| e.to_string());
     match read.and_then(|bytes| rgl::parse(&bytes)) {
-        Ok(desc) => Some(desc),
+        Ok(desc) => Some(MeasuredDesc { path, ..desc }),
         Err(problem) => {
             let message = format!("cannot read the measured material {}: {problem}", path.display());
             reader.report().error(span, message);

@@ -36,6 +36,7 @@ mod textured;
 mod tokens;
 mod v3;
 mod world;
+mod write;
 
 use std::path::Path;
 
@@ -45,6 +46,8 @@ use builder::Builder;
 use directives::{Next, execute};
 use files::Context;
 use input::Input;
+
+pub use write::write;
 
 /// Reads a pbrt-v4 scene file.
 ///

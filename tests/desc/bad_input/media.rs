@@ -11,7 +11,7 @@ fn media() {
         (
             "MakeNamedMedium \"fog\" \"string type\" @\"cloud\" WorldBegin",
             "the medium `cloud` is not supported yet",
-            "--lenient",
+            "",
         ),
         (
             "MakeNamedMedium \"fog\" \"string type\" @\"homogenous\" WorldBegin",
@@ -34,7 +34,7 @@ fn media() {
             "",
         ),
         (
-            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"string preset\" @\"Kola\" WorldBegin",
+            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"string preset\" @\"Cokes\" WorldBegin",
             "`preset` is one of",
             "`Coke`",
         ),
