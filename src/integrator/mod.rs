@@ -278,6 +278,11 @@ impl Integrator {
         !matches!(self, Self::Occlusion(_))
     }
 
+    /// Whether it connects light paths to the camera.
+    pub fn splats(&self) -> bool {
+        matches!(self, Self::Bdpt(_))
+    }
+
     /// What of `scene` it cannot render at all, for people; `None` if there is nothing.
     pub fn missing(&self, scene: &Scene) -> Option<String> {
         let can = matches!(self, Self::Path(_));
