@@ -40,8 +40,8 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 pub use crate::sampling::SamplerKind;
 pub use crate::spectrum::ColorSpace;
 pub use integrator::{
-    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc,
-    PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc,
+    PhotonDesc, PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
 };
 pub use kinds::{
     Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS,

@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
     ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilmKind, FilterKind, GBufferSpace, Heuristic,
-    IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect,
-    SAMPLERS, SamplerKind, SensorDesc, SpectralBins, SpectrumValue, Strategy, Termination,
+    IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, OcclusionDesc, PathDesc,
+    PixelRect, SAMPLERS, SamplerKind, SensorDesc, SpectralBins, SpectrumValue, Strategy, Termination,
 };
 use lucerna::sampling::Strata;
 
@@ -274,6 +274,14 @@ fn each_integrator_of_pbrt_has_one_that_stands_for_it() {
         ("\"randomwalk\" \"integer maxdepth\" 7", blind, 1),
         (mlt, IntegratorKind::Bdpt(Heuristic::Power), 6),
     ];
+    let occlusion =
+        scene("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3 WorldBegin");
+    let desc = OcclusionDesc {
+        cosine: false,
+        max_distance: Some(3.0),
+    };
+    assert_eq!(occlusion.integrator.kind, IntegratorKind::Occlusion(desc));
+    assert!(occlusion.warnings.is_empty());
     for (text, kind, warnings) in cases {
         let scene = scene(&format!("Integrator {text} WorldBegin"));
         assert_eq!(

@@ -87,7 +87,7 @@ impl Job<'_> {
         if let Some(missed) = integrator.blind_spot(&scene) {
             reporter.say(&format!("warning: {missed}"));
         }
-        if scene.lights().is_empty() {
+        if scene.lights().is_empty() && integrator.needs_lights() {
             reporter.say(&format!(
                 "warning: {} has no lights: its picture is black",
                 path.display()
@@ -106,7 +106,7 @@ impl Job<'_> {
     /// Refuses a camera or a film that does not go with the integrator or the colour mode.
     fn check_film(&self, desc: &SceneDesc, view: &View) -> Result<()> {
         let integrator = self.integrator(desc)?;
-        if integrator.film(view).takes_splats() && !view.camera.takes_light_paths() {
+        if integrator.splats() && !view.camera.takes_light_paths() {
             return Err(Error::Usage(format!(
                 "`{}` connects light paths to the camera `{}`, which looks through lenses: `path`, `photon` and `sppm` do not",
                 integrator.name(),
@@ -118,7 +118,7 @@ impl Job<'_> {
         }
         let problem = if ColorMode::from(self.args.color) == ColorMode::Rgb {
             "light has no wavelengths with --color rgb".to_owned()
-        } else if integrator.film(view).takes_splats() {
+        } else if integrator.splats() {
             format!("`{}` brings light to the film by its colors only", integrator.name())
         } else {
             return Ok(());
