@@ -4,7 +4,7 @@
 //! transforms are matrices, materials and lights are names with parameters already checked for type and range. The scene builder
 //! turns a description into things that rays can meet.
 //!
-//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]); meshes in OBJ ([`obj`]). Lucerna's extensions to pbrt-v4:
+//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]); meshes in OBJ ([`obj`]) or PLY by themselves ([`bare`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -16,6 +16,7 @@
 //! - `"integer blades"` and `"float bladerotation"` of a camera, see [`ApertureDesc`];
 //! - glasses by Sellmeier's equation and more metals among the spectra with names.
 
+pub mod bare;
 mod bytes;
 mod integrator;
 mod kinds;
@@ -54,7 +55,9 @@ pub use material::{
 };
 pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
-pub use shape::{DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
+pub use shape::{
+    CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,
+};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
@@ -182,7 +185,8 @@ pub struct ParseOptions {
     pub lenient: bool,
 }
 
-/// Reads a scene file; the format goes by the extension (`.pbrt`, `.pbrt.gz`).
+/// Reads a scene file, or a mesh on a neutral stage (see [`bare`]); the format goes by the extension (`.pbrt`, `.ply`, `.obj`; each may
+/// be followed by `.gz`).
 ///
 /// # Errors
 ///
@@ -192,9 +196,11 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
+    } else if bare::is_mesh(path) {
+        bare::load(path, None, options)
     } else {
         Err(Error::Usage(format!(
-            "{}: not a scene file that Lucerna reads (expected the extension .pbrt or .pbrt.gz)",
+            "{}: not a scene file that Lucerna reads (expected the extension .pbrt, .ply or .obj, or one of these and .gz)",
             path.display()
         )))
     }

@@ -192,6 +192,9 @@ impl LightBuilder {
         motion: Option<&AnimatedTransform>,
         alpha: &FloatTexture,
     ) -> Result<Vec<Option<LightId>>, String> {
+        if let Shape::Curves(_) = &geometry.shape {
+            return Err("curves cannot be lights, as in pbrt".to_owned());
+        }
         let image = desc
             .image
             .as_deref()
@@ -289,6 +292,7 @@ fn emitter(
             };
             Some((light?, Coordinates::Own))
         }
+        Shape::Curves(_) => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Scene descriptions: what pbrt files and PLY meshes become, what is said about bad ones, and that no bytes make the reader panic.
 
 mod bad_input;
+mod bare;
 mod files;
 mod lenses;
 mod lights;

@@ -25,9 +25,15 @@ Examples:
   lucerna render hall.pbrt -o 'hall-{camera}.exr' --json --stats hall.json
   lucerna render hall.pbrt -o corner.exr --resolution 1920x1080 --crop 0,0,200,100")]
 pub struct RenderArgs {
-    /// Scene files (.pbrt, .pbrt.gz)
+    /// Scene files (.pbrt), or meshes (.ply, .obj), which are put on a neutral stage; each may be compressed (.gz)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
+
+    /// With meshes: an image all around that lights them, instead of a lamp over a floor
+    ///
+    /// Equal-area octahedral (square) or equirectangular (twice as wide as high), upright: .exr, .hdr, .pfm, .png and others.
+    #[arg(long, value_name = "IMAGE")]
+    pub env: Option<PathBuf>,
 
     /// The image: .exr (32-bit float, linear) or .png (8-bit sRGB)
     ///

@@ -32,9 +32,15 @@ impl Job<'_> {
     /// anything is rendered.
     pub(super) fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
         let args = self.args;
-        let desc = self
-            .pool
-            .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
+        let options = ParseOptions { lenient: args.lenient };
+        let desc = self.pool.install(|| match &args.env {
+            None => desc::load(path, &options),
+            Some(environment) if desc::bare::is_mesh(path) => desc::bare::load(path, Some(environment), &options),
+            Some(_) => Err(Error::Usage(format!(
+                "{}: --env lights bare meshes (.ply, .obj); a scene has lights of its own",
+                path.display()
+            ))),
+        })?;
         let reporter = Reporter {
             channel: self.channel,
             scene: path,
@@ -132,7 +138,10 @@ impl Job<'_> {
     /// The file for a view: distinct from that of every other picture of this job.
     fn output_path(&mut self, scene: &Path, view: &View, views: usize) -> Result<PathBuf> {
         let file_name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let stem = file_name.trim_end_matches(".gz").trim_end_matches(".pbrt");
+        let stem = file_name.trim_end_matches(".gz");
+        let stem = [".pbrt", ".ply", ".obj"]
+            .iter()
+            .fold(stem, |stem, end| stem.trim_end_matches(end));
         let several = if views > 1 {
             "{scene}-{camera}.exr"
         } else {
