@@ -93,6 +93,24 @@ pub enum MaterialKind {
         /// How much there is of the second.
         amount: Textured<f32>,
     },
+    /// One material seen from the side of the shading normal, another from behind; black without one. Neither may transmit light.
+    Sided {
+        /// On the side of the shading normal.
+        front: Option<MaterialId>,
+        /// On the other side.
+        back: Option<MaterialId>,
+    },
+    /// A conductor, dielectric or thin dielectric of which less light comes than is reflected and transmitted.
+    Tinted {
+        /// Which.
+        material: MaterialId,
+        /// Factor of what is reflected.
+        reflectance: Textured<SpectrumDesc>,
+        /// Factor of what is transmitted.
+        transmittance: Textured<SpectrumDesc>,
+    },
+    /// Mitsuba's `plastic` and `roughplastic`.
+    Plastic(PlasticDesc),
     /// A surface by the parameters of artists.
     Principled(PrincipledDesc),
     /// A surface by measurements.
@@ -116,6 +134,21 @@ pub struct CoatDesc {
     pub max_depth: u32,
     /// Walks that a value is the mean of.
     pub samples: u32,
+}
+
+/// A diffuse base under a dielectric boundary, in closed form.
+#[derive(Clone, Debug)]
+pub struct PlasticDesc {
+    /// Albedo of the base.
+    pub diffuse_reflectance: Textured<SpectrumDesc>,
+    /// Factor of what the boundary reflects.
+    pub specular_reflectance: Textured<SpectrumDesc>,
+    /// Index of refraction of the inside over that of the outside; positive.
+    pub eta: f32,
+    /// Whether light that the boundary reflects back inside takes on more of the base's color each time.
+    pub nonlinear: bool,
+    /// How rough the boundary is.
+    pub roughness: RoughnessDesc,
 }
 
 /// The parameters of Mitsuba's `principled`, all in [0, 1] but for `eta`.
@@ -181,6 +214,8 @@ pub struct RoughnessDesc {
     pub remap: bool,
     /// How slopes are distributed.
     pub distribution: DistributionDesc,
+    /// Whether facets are masked and shadowed independently of each other, as in Mitsuba; if not, by their heights, as in pbrt.
+    pub separable_masking: bool,
 }
 
 /// A spectrum as it was typed. What it means (albedo, emission, unbounded) depends on where it is used.

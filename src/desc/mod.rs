@@ -4,7 +4,8 @@
 //! transforms are matrices, materials and lights are names with parameters already checked for type and range. The scene builder
 //! turns a description into things that rays can meet.
 //!
-//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]). Lucerna's extensions to pbrt-v4:
+//! The formats: pbrt-v4 ([`pbrt`]) and Mitsuba 3 ([`mitsuba`]), with meshes in PLY ([`ply`]), OBJ ([`obj`]) and Mitsuba's own
+//! format ([`serialized`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -17,14 +18,20 @@
 //! - glasses by Sellmeier's equation and more metals among the spectra with names.
 
 mod bytes;
+mod images;
 mod integrator;
 mod kinds;
 mod light;
 mod material;
+pub mod mitsuba;
+pub mod obj;
 pub mod pbrt;
 pub mod ply;
+mod report;
 pub mod rgl;
+pub mod serialized;
 mod shape;
+mod suggest;
 mod texture;
 mod view;
 
@@ -43,9 +50,9 @@ pub use integrator::{
 pub use kinds::{
     Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, Parameter, ParameterDefault, ParameterKind, SAMPLERS, TEXTURES,
 };
-pub use light::{AreaLightDesc, LightDesc, LightKind};
+pub use light::{AreaLightDesc, LightDesc, LightKind, SpotFalloff};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PrincipledDesc, ReliefDesc, RoughnessDesc,
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc, RoughnessDesc,
     SpectrumDesc, SpectrumValue,
 };
 pub use rgl::{MeasuredDesc, Tensor};
@@ -165,13 +172,18 @@ pub struct InstanceDesc {
 }
 
 /// How strictly a file is read.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ParseOptions {
     /// Unknown and unsupported parameters, types and directives are warnings where something sensible can stand in for them.
     pub lenient: bool,
+    /// Names and values of parameters (`$name`) of a Mitsuba scene, instead of its defaults.
+    pub defines: Vec<(String, String)>,
 }
 
-/// Reads a scene file; the format goes by the extension (`.pbrt`, `.pbrt.gz`).
+/// The extensions of the scene files that [`load`] reads.
+const EXTENSIONS: &str = ".pbrt, .pbrt.gz (pbrt-v4) or .xml (Mitsuba 3)";
+
+/// Reads a scene file; the format goes by the extension (`.pbrt`, `.pbrt.gz`, `.xml`).
 ///
 /// # Errors
 ///
@@ -181,9 +193,11 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
+    } else if name.ends_with(".xml") {
+        mitsuba::load(path, options)
     } else {
         Err(Error::Usage(format!(
-            "{}: not a scene file that Lucerna reads (expected the extension .pbrt or .pbrt.gz)",
+            "{}: not a scene file that Lucerna reads (expected the extension {EXTENSIONS})",
             path.display()
         )))
     }

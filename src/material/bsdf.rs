@@ -2,7 +2,8 @@
 
 use super::sides::Sides;
 use super::{
-    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Plastic, Principled,
+    ThinDielectric, Tinted,
 };
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
@@ -157,6 +158,8 @@ pub enum Lobe<'a> {
     Layered(Layered),
     Principled(Principled<'a>),
     Measured(Measured<'a>),
+    Plastic(Plastic<'a>),
+    Tinted(Tinted),
 }
 
 // The commonest lobe is where it is asked for, the others are calls away: together they would push its numbers out of registers.
@@ -179,6 +182,8 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.eval(wo, wi, mode),
             Self::Principled(lobe) => lobe.eval(wo, wi, mode),
             Self::Measured(lobe) => lobe.eval(wo, wi),
+            Self::Plastic(lobe) => lobe.eval(wo, wi),
+            Self::Tinted(lobe) => lobe.eval(wo, wi, mode),
             Self::Conductor(lobe) => lobe.eval(wo, wi),
             Self::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }
@@ -202,6 +207,8 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Measured(lobe) => lobe.sample_f(wo, u),
+            Self::Plastic(lobe) => lobe.sample_f(wo, u_lobe, u),
+            Self::Tinted(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Conductor(lobe) => lobe.sample_f(wo, u),
             Self::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }
@@ -257,8 +264,10 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::Principled(_)
+            | Lobe::Plastic(_)
             | Lobe::Measured(_) => false,
             Lobe::ThinDielectric(_) => true,
+            Lobe::Tinted(lobe) => lobe.is_delta(),
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
             Lobe::Dielectric(lobe) => lobe.is_delta(),
@@ -276,9 +285,13 @@ impl<'a> Bsdf<'a> {
         // Where a map has bent that normal, some of them reflect.
         self.sides.is_some()
             || match &self.lobe {
-                Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => {
-                    false
-                }
+                Lobe::Diffuse(_)
+                | Lobe::OrenNayar(_)
+                | Lobe::Conductor(_)
+                | Lobe::Layered(_)
+                | Lobe::Plastic(_)
+                | Lobe::Measured(_) => false,
+                Lobe::Tinted(lobe) => lobe.transmits(),
                 Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => {
                     true
                 }
@@ -289,6 +302,7 @@ impl<'a> Bsdf<'a> {
     pub fn has_delta(&self) -> bool {
         match &self.lobe {
             Lobe::Layered(lobe) => lobe.has_delta(),
+            Lobe::Plastic(lobe) => lobe.has_delta(),
             _ => self.is_delta(),
         }
     }
@@ -297,7 +311,12 @@ impl<'a> Bsdf<'a> {
     /// is then better followed on its way than looked for from here; photon maps keep nothing of it.
     pub fn is_specular(&self) -> bool {
         match &self.lobe {
-            Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::DiffuseTransmission(_) | Lobe::Measured(_) => false,
+            Lobe::Diffuse(_)
+            | Lobe::OrenNayar(_)
+            | Lobe::DiffuseTransmission(_)
+            | Lobe::Plastic(_)
+            | Lobe::Measured(_) => false,
+            Lobe::Tinted(lobe) => lobe.is_specular(),
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_specular(),
@@ -327,6 +346,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
             | Lobe::Principled(_)
+            | Lobe::Plastic(_)
+            | Lobe::Tinted(_)
             | Lobe::Measured(_) => false,
         }
     }

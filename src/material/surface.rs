@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::{
     Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
-    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
-    ThinDielectric,
+    MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled, PrincipledParameters,
+    PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -79,6 +79,33 @@ pub enum Material {
     Relief(Arc<Relief>),
     /// By measurements.
     Measured(Arc<MeasuredTables>),
+    /// One material on the side of the shading normal, another on the other; black without one. Neither transmits.
+    Sided(Arc<[Option<Material>; 2]>),
+    /// A specular material of which less light comes.
+    Tinted(Arc<TintedMaterial>),
+    /// A diffuse base under a dielectric boundary, in closed form.
+    Plastic(Arc<PlasticMaterial>),
+}
+
+/// A conductor, dielectric or thin dielectric with factors.
+#[derive(Clone, Debug)]
+pub struct TintedMaterial {
+    /// Which; any other is black.
+    pub material: Material,
+    /// Factor of what is reflected.
+    pub reflectance: SpectrumTexture,
+    /// Factor of what is transmitted.
+    pub transmittance: SpectrumTexture,
+}
+
+/// The textures of [`PlasticParameters`].
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "see there")]
+pub struct PlasticMaterial {
+    pub diffuse: SpectrumTexture,
+    pub specular: SpectrumTexture,
+    pub nonlinear: bool,
+    pub tables: PlasticTables,
 }
 
 /// A dielectric coat and what is under it.
@@ -147,7 +174,10 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
         let material = match self {
-            Self::Mix(_) => self.chosen(si),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material,
+                None => return Bsdf::new(Frame::from_normal(si.ns), Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO))),
+            },
             _ => self,
         };
         // The commonest first, and made in its place: a lobe of any kind is some hundred bytes to move.
@@ -177,6 +207,9 @@ impl Material {
             Self::ThinDielectric { .. } => true,
             Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
             Self::Mix(mix) => mix.materials.iter().any(Self::may_have_delta),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::may_have_delta),
+            Self::Tinted(tinted) => tinted.material.may_have_delta(),
+            Self::Plastic(plastic) => plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.may_have_delta(),
         }
     }
@@ -186,12 +219,15 @@ impl Material {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) => true,
             Self::Mix(mix) => mix.materials.iter().all(Self::is_never_specular),
+            Self::Sided(sides) => sides.iter().flatten().all(Self::is_never_specular),
+            Self::Plastic(plastic) => !plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.is_never_specular(),
             Self::Conductor { .. }
             | Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
             | Self::CoatedDiffuse { .. }
             | Self::CoatedConductor { .. }
+            | Self::Tinted(_)
             | Self::Principled(_) => false,
         }
     }
@@ -266,7 +302,19 @@ impl Material {
                 let lobe = Layered::new(boundary, body, coat.interlayer(si, lambda));
                 (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
             }
-            Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material.lobe(si, lambda),
+                None => (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+            },
+            Self::Tinted(tinted) => tinted.lobe(si, lambda),
+            Self::Plastic(plastic) => {
+                let p = PlasticParameters {
+                    diffuse: plastic.diffuse.reflectance_at(si, lambda),
+                    specular: plastic.specular.reflectance_at(si, lambda),
+                    nonlinear: plastic.nonlinear,
+                };
+                (Lobe::Plastic(Plastic::new(p, &plastic.tables)), false)
+            }
             // For those who want no more than the lobe: the normal has been bent before.
             Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
@@ -278,22 +326,41 @@ impl Material {
         }
     }
 
-    /// The material that a mix is at a point, which is no mix.
-    fn chosen(&self, si: &SurfaceInteraction) -> &Self {
+    /// The material that a mix is at a point, or that is on the side that it is seen from: neither of these. `None` is black.
+    fn chosen(&self, si: &SurfaceInteraction) -> Option<&Self> {
         let mut material = self;
         let mut u = unit_f32((hash_u32s(&si.p.to_array().map(f32::to_bits)) >> 32) as u32);
-        while let Self::Mix(mix) = material {
-            let amount = mix.amount.at(si);
-            // What is left of the number is uniform again, for mixes of mixes.
-            if u < amount {
-                material = &mix.materials[1];
-                u /= amount;
-            } else {
-                material = &mix.materials[0];
-                u = (u - amount) / (1.0 - amount);
+        loop {
+            match material {
+                Self::Mix(mix) => {
+                    let amount = mix.amount.at(si);
+                    // What is left of the number is uniform again, for mixes of mixes.
+                    if u < amount {
+                        material = &mix.materials[1];
+                        u /= amount;
+                    } else {
+                        material = &mix.materials[0];
+                        u = (u - amount) / (1.0 - amount);
+                    }
+                }
+                Self::Sided(sides) => material = sides[usize::from(si.wo.dot(si.ns) < 0.0)].as_ref()?,
+                _ => return Some(material),
             }
         }
-        material
+    }
+}
+
+impl TintedMaterial {
+    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+        let (lobe, is_anisotropic) = self.material.lobe(si, lambda);
+        let lobe = match lobe {
+            Lobe::Conductor(lobe) => Untinted::Conductor(lobe),
+            Lobe::Dielectric(lobe) => Untinted::Dielectric(lobe),
+            Lobe::ThinDielectric(lobe) => Untinted::ThinDielectric(lobe),
+            _ => return (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+        };
+        let [r, t] = [&self.reflectance, &self.transmittance].map(|tint| tint.reflectance_at(si, lambda));
+        (Lobe::Tinted(Tinted::new(lobe, r, t)), is_anisotropic)
     }
 }
 

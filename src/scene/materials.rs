@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
-use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc};
+use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc};
 use crate::material::{
-    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PrincipledMaterial, PrincipledTables, Relief,
+    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PlasticMaterial, PlasticTables, PrincipledMaterial,
+    PrincipledTables, Relief, Roughness, TintedMaterial,
 };
 
 /// All materials of a scene, by their ids.
@@ -98,6 +99,19 @@ impl MaterialCompiler<'_, '_> {
             MaterialKind::Measured(desc) => {
                 Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
             }
+            MaterialKind::Sided { front, back } => {
+                Material::Sided(Arc::new([*front, *back].map(|side| side.map(|id| self.material(id)))))
+            }
+            MaterialKind::Tinted {
+                material,
+                reflectance,
+                transmittance,
+            } => Material::Tinted(Arc::new(TintedMaterial {
+                material: self.material(*material),
+                reflectance: self.textures.spectrum(reflectance, SpectrumUse::Albedo),
+                transmittance: self.textures.spectrum(transmittance, SpectrumUse::Albedo),
+            })),
+            MaterialKind::Plastic(desc) => Material::Plastic(Arc::new(plastic(desc, self.textures))),
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),
@@ -125,6 +139,20 @@ fn coating(desc: &CoatDesc, textures: &mut TextureCompiler<'_>) -> Coat {
         g: textures.float(&desc.g),
         max_depth: desc.max_depth,
         samples: desc.samples,
+    }
+}
+
+fn plastic(desc: &PlasticDesc, textures: &mut TextureCompiler<'_>) -> PlasticMaterial {
+    let facets = match textures.roughness(&desc.roughness) {
+        Roughness::Constant(facets) => facets,
+        // The reader sees to it that there is none.
+        Roughness::Textured(_) => None,
+    };
+    PlasticMaterial {
+        diffuse: textures.spectrum(&desc.diffuse_reflectance, SpectrumUse::Albedo),
+        specular: textures.spectrum(&desc.specular_reflectance, SpectrumUse::Albedo),
+        nonlinear: desc.nonlinear,
+        tables: PlasticTables::new(desc.eta, facets),
     }
 }
 

@@ -15,8 +15,14 @@ use std::path::{Path, PathBuf};
 use lucerna::desc::{ParseOptions, SceneDesc, pbrt};
 use lucerna::error::{Diagnostic, Error, Severity};
 
-const STRICT: ParseOptions = ParseOptions { lenient: false };
-const LENIENT: ParseOptions = ParseOptions { lenient: true };
+const STRICT: ParseOptions = ParseOptions {
+    lenient: false,
+    defines: Vec::new(),
+};
+const LENIENT: ParseOptions = ParseOptions {
+    lenient: true,
+    defines: Vec::new(),
+};
 
 fn read(text: &str, options: &ParseOptions) -> Result<SceneDesc, Vec<Diagnostic>> {
     pbrt::parse_str(text.as_bytes(), Path::new("scene.pbrt"), options).map_err(|e| match e {

@@ -102,6 +102,7 @@ fn no_text_makes_the_reader_panic() {
         let text = mutate(SCENES[round % SCENES.len()].as_bytes(), 0, &mut random);
         let options = ParseOptions {
             lenient: round % 2 == 0,
+            ..ParseOptions::default()
         };
         // What is reported must be fit to be shown, too.
         match pbrt::parse_str(&text, Path::new("no/such/directory/scene.pbrt"), &options) {

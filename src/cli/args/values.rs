@@ -157,6 +157,14 @@ impl From<QualityArg> for BuildQuality {
     }
 }
 
+/// `NAME=VALUE`.
+pub(super) fn parse_define(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}
+
 pub(super) fn parse_backend(text: &str) -> Result<Backend, String> {
     text.parse().map_err(|error: crate::Error| error.to_string())
 }

@@ -31,9 +31,11 @@ impl Job<'_> {
     /// anything is rendered.
     pub(super) fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
         let args = self.args;
-        let desc = self
-            .pool
-            .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
+        let options = ParseOptions {
+            lenient: args.lenient,
+            defines: args.defines.clone(),
+        };
+        let desc = self.pool.install(|| desc::load(path, &options))?;
         let reporter = Reporter {
             channel: self.channel,
             scene: path,

@@ -13,7 +13,7 @@ use crate::desc::kinds::lights::{
     IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
 };
 use crate::desc::{
-    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
+    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, SpotFalloff, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
     SpectrumValue,
 };
 use crate::image_io::{self, Image};
@@ -120,7 +120,13 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
         let range = format!("no more than `{}`, {angle}", CONE_ANGLE.name);
         reader.out_of_range(CONE_DELTA.name, &delta.to_string(), &range);
     }
-    LightKind::Spot { from, to, angle, delta }
+    LightKind::Spot {
+        from,
+        to,
+        angle,
+        delta,
+        falloff: SpotFalloff::Smooth,
+    }
 }
 
 fn infinite(reader: &mut ParamReader<'_>) -> (LightKind, Option<SpectrumDesc>) {

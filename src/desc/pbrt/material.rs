@@ -182,6 +182,7 @@ fn roughness(reader: &mut ParamReader<'_>, [both, u, v]: &RoughnessNames) -> Rou
             "beckmann" => DistributionDesc::Beckmann,
             _ => DistributionDesc::Ggx,
         },
+        separable_masking: false,
     }
 }
 
