@@ -52,8 +52,8 @@ pub use kinds::{
 };
 pub use light::{AreaLightDesc, LightDesc, LightKind, SpotFalloff};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc, RoughnessDesc,
-    SpectrumDesc, SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc,
+    RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
 pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{MeshDesc, ShapeDesc, ShapeKind};

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::suggest;
 use super::ParseOptions;
+use super::suggest;
 use crate::error::{Diagnostic, Severity, SourceMap, Span};
 
 /// After so many errors reading stops, and so many warnings are kept: whoever has more will want to fix these first.

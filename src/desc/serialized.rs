@@ -65,9 +65,15 @@ pub fn parse(content: &[u8], index: u32) -> Result<SerializedMesh, String> {
     let doubles = flags & DOUBLE_PRECISION != 0;
     let has = |flag: u32| flags & flag != 0;
     let positions = stream.vectors(vertices, doubles)?;
-    let normals = if has(HAS_NORMALS) { stream.vectors(vertices, doubles)? } else { Vec::new() };
+    let normals = if has(HAS_NORMALS) {
+        stream.vectors(vertices, doubles)?
+    } else {
+        Vec::new()
+    };
     let uvs = if has(HAS_TEXTURE_COORDINATES) {
-        stream.many(vertices, |stream| Ok(Vec2::new(stream.number(doubles)?, stream.number(doubles)?)))?
+        stream.many(vertices, |stream| {
+            Ok(Vec2::new(stream.number(doubles)?, stream.number(doubles)?))
+        })?
     } else {
         Vec::new()
     };
@@ -99,7 +105,9 @@ pub fn parse(content: &[u8], index: u32) -> Result<SerializedMesh, String> {
 
 /// Checks the first four bytes of a mesh.
 fn header(bytes: &[u8]) -> Result<(), String> {
-    let [a, b, c, d, ..] = bytes else { return Err("the file ends early".to_owned()) };
+    let [a, b, c, d, ..] = bytes else {
+        return Err("the file ends early".to_owned());
+    };
     let (format, version) = (u16::from_le_bytes([*a, *b]), u16::from_le_bytes([*c, *d]));
     if format != FORMAT {
         return Err("this is no serialized mesh of Mitsuba".to_owned());
@@ -113,10 +121,15 @@ fn header(bytes: &[u8]) -> Result<(), String> {
 /// Where a mesh begins, by the index at the end of the file.
 fn start(content: &[u8], index: u32) -> Result<usize, String> {
     header(content)?;
-    let count = content.len().checked_sub(4).and_then(|at| content[at..].try_into().ok());
+    let count = content
+        .len()
+        .checked_sub(4)
+        .and_then(|at| content[at..].try_into().ok());
     let count = u32::from_le_bytes(count.ok_or("the file ends early")?);
     if index >= count {
-        return Err(format!("there is no mesh {index}: the file has {count}, counted from 0"));
+        return Err(format!(
+            "there is no mesh {index}: the file has {count}, counted from 0"
+        ));
     }
     let bytes = if content[2] == 4 { 8 } else { 4 };
     let back = (count - index) as usize * bytes + 4;
@@ -146,7 +159,11 @@ impl<R: Read> Stream<R> {
         } else {
             f32::from_le_bytes(self.bytes()?)
         };
-        if value.is_finite() { Ok(value) } else { Err("a number is not finite".to_owned()) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err("a number is not finite".to_owned())
+        }
     }
 
     fn many<T>(&mut self, count: u64, mut one: impl FnMut(&mut Self) -> Result<T, String>) -> Result<Vec<T>, String> {
@@ -159,7 +176,11 @@ impl<R: Read> Stream<R> {
 
     fn vectors(&mut self, count: u64, double: bool) -> Result<Vec<Vec3>, String> {
         self.many(count, |stream| {
-            Ok(Vec3::new(stream.number(double)?, stream.number(double)?, stream.number(double)?))
+            Ok(Vec3::new(
+                stream.number(double)?,
+                stream.number(double)?,
+                stream.number(double)?,
+            ))
         })
     }
 }

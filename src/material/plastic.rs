@@ -56,7 +56,9 @@ impl PlasticTables {
             };
         };
         // Not quite 0: there are no normals to be seen along a plane.
-        let transmittance = (0..COSINES).map(|i| transmitted(&rough, cosine(i).max(1e-6), eta)).collect();
+        let transmittance = (0..COSINES)
+            .map(|i| transmitted(&rough, cosine(i).max(1e-6), eta))
+            .collect();
         let middle = |i: usize| (i as f32 + 0.5) / COSINES as f32;
         let internal = (0..COSINES).map(|i| 2.0 * reflected(&rough, middle(i), 1.0 / eta) * middle(i));
         Self {
@@ -128,7 +130,11 @@ impl<'a> Plastic<'a> {
     pub fn new(p: PlasticParameters, tables: &'a PlasticTables) -> Self {
         let over_eta2 = 1.0 / (tables.eta * tables.eta);
         let base = p.diffuse.map(|rho| {
-            let again = if p.nonlinear { rho * tables.internal } else { tables.internal };
+            let again = if p.nonlinear {
+                rho * tables.internal
+            } else {
+                tables.internal
+            };
             rho * over_eta2 / (1.0 - again)
         });
         Self { p, tables, base }
@@ -224,7 +230,11 @@ mod tests {
             }
         }
         let mean = (sum / f64::from(rows * columns)) as f32 * TAU;
-        let delta = if plastic.has_delta() { fresnel_dielectric(cos, plastic.tables.eta) } else { 0.0 };
+        let delta = if plastic.has_delta() {
+            fresnel_dielectric(cos, plastic.tables.eta)
+        } else {
+            0.0
+        };
         mean + delta
     }
 
@@ -259,7 +269,12 @@ mod tests {
     fn a_nearly_smooth_boundary_is_like_a_smooth_one() {
         let facets = Microfacets::new(Distribution::Ggx, 0.01, 0.01);
         let (smooth, rough) = (PlasticTables::new(1.49, None), PlasticTables::new(1.49, facets));
-        assert!((smooth.internal - rough.internal).abs() < 5e-3, "{} and {}", smooth.internal, rough.internal);
+        assert!(
+            (smooth.internal - rough.internal).abs() < 5e-3,
+            "{} and {}",
+            smooth.internal,
+            rough.internal
+        );
         for cos in [0.2, 0.6, 1.0] {
             let (a, b) = (smooth.transmittance(cos), rough.transmittance(cos));
             assert!((a - b).abs() < 5e-3, "{cos}: {a} and {b}");

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::{
     Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
-    MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled, PrincipledParameters,
-    PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
+    MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
+    PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -176,7 +176,12 @@ impl Material {
         let material = match self {
             Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
                 Some(material) => material,
-                None => return Bsdf::new(Frame::from_normal(si.ns), Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO))),
+                None => {
+                    return Bsdf::new(
+                        Frame::from_normal(si.ns),
+                        Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)),
+                    );
+                }
             },
             _ => self,
         };

@@ -1,9 +1,10 @@
-//! Scene descriptions: what pbrt files and PLY meshes become, what is said about bad ones, and that no bytes make the reader panic.
+//! Scene descriptions: what pbrt and Mitsuba files and meshes become, what is said about bad ones, and that no bytes make a reader panic.
 
 mod bad_input;
 mod files;
 mod lights;
 mod materials;
+mod mitsuba;
 mod mutations;
 mod options;
 mod ply;

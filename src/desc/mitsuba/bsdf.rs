@@ -8,8 +8,8 @@ use super::props::Props;
 use super::spectrum::Use;
 use super::texture;
 use crate::desc::{
-    ConductorDesc, DistributionDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc, RoughnessDesc,
-    SpectrumDesc, SpectrumValue, Textured,
+    ConductorDesc, DistributionDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc,
+    RoughnessDesc, SpectrumDesc, SpectrumValue, Textured,
 };
 use crate::error::Span;
 
@@ -86,7 +86,13 @@ impl<'g> Loader<'g> {
         if let Some(&id) = self.one_sided.get(&material) {
             return id;
         }
-        let id = self.add_material(MaterialKind::Sided { front: Some(material), back: None }, span);
+        let id = self.add_material(
+            MaterialKind::Sided {
+                front: Some(material),
+                back: None,
+            },
+            span,
+        );
         self.one_sided.insert(material, id);
         id
     }
@@ -118,7 +124,12 @@ impl<'g> Loader<'g> {
             }
             "thindielectric" => {
                 let eta = self.relative_ior(props, "bk7");
-                (MaterialKind::ThinDielectric { eta: number(eta, object.span) }, false)
+                (
+                    MaterialKind::ThinDielectric {
+                        eta: number(eta, object.span),
+                    },
+                    false,
+                )
             }
             "plastic" => (self.plastic(props, None), true),
             "roughplastic" => {
@@ -151,7 +162,11 @@ impl<'g> Loader<'g> {
     fn tinted(&mut self, props: &mut Props<'g>, material: MaterialId) -> MaterialId {
         let transmits = props.object.plugin.contains("dielectric");
         let reflectance = props.take("specular_reflectance");
-        let transmittance = if transmits { props.take("specular_transmittance") } else { None };
+        let transmittance = if transmits {
+            props.take("specular_transmittance")
+        } else {
+            None
+        };
         let given = [reflectance, transmittance].map(|p| p.filter(|p| !Self::is_number(p, 1.0)));
         if given.iter().all(Option::is_none) {
             return material;
@@ -224,7 +239,10 @@ impl<'g> Loader<'g> {
         let both = props.take("alpha");
         let [u, v] = ["alpha_u", "alpha_v"].map(|name| props.take(name));
         if both.is_some() && (u.is_some() || v.is_some()) {
-            props.error(props.span_of("alpha"), "`alpha` and `alpha_u` or `alpha_v` exclude each other");
+            props.error(
+                props.span_of("alpha"),
+                "`alpha` and `alpha_u` or `alpha_v` exclude each other",
+            );
         }
         if u.is_some() != v.is_some() {
             let message = "`alpha_u` and `alpha_v` are given both or not at all";
@@ -289,14 +307,20 @@ impl<'g> Loader<'g> {
         for (index, object) in children {
             let scattering = self.scattering(index)?;
             if !scattering.one_sided {
-                let message = format!("`{}` cannot be inside `twosided`: it transmits, or has two sides itself", object.plugin);
+                let message = format!(
+                    "`{}` cannot be inside `twosided`: it transmits, or has two sides itself",
+                    object.plugin
+                );
                 props.error(object.span, message);
                 return None;
             }
             sides.push(scattering);
         }
         let Some(back) = sides.get(1) else {
-            return sides.pop().map(|front| Scattering { one_sided: false, ..front });
+            return sides.pop().map(|front| Scattering {
+                one_sided: false,
+                ..front
+            });
         };
         let kind = MaterialKind::Sided {
             front: Some(sides[0].material),
@@ -315,7 +339,11 @@ impl<'g> Loader<'g> {
         let alpha = self.fraction(opacity, 0.5);
         let inner = inner?;
         if inner.alpha != Textured::Value(1.0) {
-            props.unsupported(props.object.span, "a `mask` inside a `mask` is not supported", "the outer one counts");
+            props.unsupported(
+                props.object.span,
+                "a `mask` inside a `mask` is not supported",
+                "the outer one counts",
+            );
         }
         // What is not masked has its sides here: a `mask` cannot be inside a `twosided`.
         Some(Scattering {
@@ -370,12 +398,17 @@ impl<'g> Loader<'g> {
                 props.error(span, "`bumpmap` takes one texture");
             }
             let (index, object) = *texture.first()?;
-            self.texture(index, object, false).map(|id| ReliefDesc::Displacement(self.scaled(id, scale as f32, span)))
+            self.texture(index, object, false)
+                .map(|id| ReliefDesc::Displacement(self.scaled(id, scale as f32, span)))
         };
         let (inner, relief) = (inner?, relief?);
         let desc = self.materials[inner.material.0 as usize].clone();
         if desc.relief.is_some() {
-            props.unsupported(span, "a bump or normal map inside another is not supported", "the outer one counts");
+            props.unsupported(
+                span,
+                "a bump or normal map inside another is not supported",
+                "the outer one counts",
+            );
         }
         self.materials.push(MaterialDesc {
             relief: Some(relief),
@@ -395,7 +428,11 @@ impl<'g> Loader<'g> {
         };
         let image = self.bitmap(object)?;
         if !texture::is_plain(&image) {
-            props.unsupported(map.span, "`to_uv` and `wrap_mode` of a normal map are not supported", "they are ignored");
+            props.unsupported(
+                map.span,
+                "`to_uv` and `wrap_mode` of a normal map are not supported",
+                "they are ignored",
+            );
         }
         Some(ReliefDesc::Normals(image.image))
     }

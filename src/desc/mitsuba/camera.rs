@@ -17,10 +17,18 @@ impl<'g> Loader<'g> {
         let film = self.child(&mut props, Class::Film);
         let sampler = self.child(&mut props, Class::Sampler);
         for (_, medium) in self.children(&mut props, Class::Medium) {
-            props.unsupported(medium.span, "participating media are not supported", "the sensor is without");
+            props.unsupported(
+                medium.span,
+                "participating media are not supported",
+                "the sensor is without",
+            );
         }
         if let Some(srf) = props.take("srf") {
-            props.unsupported(srf.span, "a response function of a sensor is not supported", "it is ignored");
+            props.unsupported(
+                srf.span,
+                "a response function of a sensor is not supported",
+                "it is ignored",
+            );
         }
         let picture = match film {
             Some((_, film)) => self.film(film),
@@ -42,7 +50,11 @@ impl<'g> Loader<'g> {
             !id.is_empty() && !id.starts_with('.') && id.chars().all(plain)
         };
         let taken = |name: &str| self.views.iter().any(|view| view.name == name);
-        let numbered = if count == 1 { "camera".to_owned() } else { format!("camera{}", number + 1) };
+        let numbered = if count == 1 {
+            "camera".to_owned()
+        } else {
+            format!("camera{}", number + 1)
+        };
         let name = object.id.as_ref().filter(fit).filter(|id| !taken(id));
         self.views.push(ViewDesc {
             name: name.cloned().unwrap_or(numbered),
@@ -132,7 +144,10 @@ impl<'g> Loader<'g> {
             "halton" => SamplerKind::Halton,
             "sobol" | "hammersley" => SamplerKind::Sobol,
             "multijitter" | "orthogonal" | "ldsampler" => {
-                let message = format!("the sampler `{}` is `sobol` here, which converges to the same picture", object.plugin);
+                let message = format!(
+                    "the sampler `{}` is `sobol` here, which converges to the same picture",
+                    object.plugin
+                );
                 props.warning(object.span, message);
                 SamplerKind::Sobol
             }
@@ -155,11 +170,17 @@ pub(super) fn field_of_view(props: &mut Props<'_>, aspect: f64) -> Option<f64> {
     let axis = props.choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"]);
     if let Some(text) = props.string("focal_length") {
         if props.has("fov") {
-            props.error(props.span_of("focal_length"), "`fov` and `focal_length` exclude each other");
+            props.error(
+                props.span_of("focal_length"),
+                "`fov` and `focal_length` exclude each other",
+            );
         }
         let millimetres = text.trim().strip_suffix("mm").unwrap_or(text).trim().parse::<f64>();
         let Some(length) = millimetres.ok().filter(|v| *v > 0.0 && v.is_finite()) else {
-            props.error(props.span_of("focal_length"), "expected a length in millimetres, `50mm`");
+            props.error(
+                props.span_of("focal_length"),
+                "expected a length in millimetres, `50mm`",
+            );
             return None;
         };
         // For the diagonal of 35 mm film.
@@ -171,7 +192,10 @@ pub(super) fn field_of_view(props: &mut Props<'_>, aspect: f64) -> Option<f64> {
     }
     let fov = props.float("fov")?;
     if !(fov > 0.0 && fov < 180.0) {
-        props.error(props.span_of("fov"), format!("`fov` is {fov}; expected an angle in (0, 180) degrees"));
+        props.error(
+            props.span_of("fov"),
+            format!("`fov` is {fov}; expected an angle in (0, 180) degrees"),
+        );
         return None;
     }
     let half = (0.5 * fov.to_radians()).tan();

@@ -18,7 +18,11 @@ impl<'g> Loader<'g> {
         if object.plugin != "area" {
             let message = format!("an emitter of a shape is of the type `area`, not `{}`", object.plugin);
             if object.plugin == "directionalarea" {
-                props.unsupported(object.span, "the emitter `directionalarea` is not supported", "it is left out");
+                props.unsupported(
+                    object.span,
+                    "the emitter `directionalarea` is not supported",
+                    "it is left out",
+                );
             } else {
                 props.error(object.span, message);
             }
@@ -31,7 +35,9 @@ impl<'g> Loader<'g> {
         let image = self.light_image(&mut props, radiance);
         let light = match image {
             Some(image) => image.map(|image| (None, Some(image), 1.0)),
-            None => self.emission(radiance, object.span).map(|(l, scale)| (Some(l), None, scale)),
+            None => self
+                .emission(radiance, object.span)
+                .map(|(l, scale)| (Some(l), None, scale)),
         };
         props.finish(self.report());
         let (l, image, scale) = light?;
@@ -55,7 +61,10 @@ impl<'g> Loader<'g> {
             "directional" => self.directional(&mut props),
             "constant" => {
                 let radiance = props.take("radiance");
-                let kind = LightKind::Infinite { image: None, portal: None };
+                let kind = LightKind::Infinite {
+                    image: None,
+                    portal: None,
+                };
                 self.light(radiance, kind, DAffine3::IDENTITY, &props)
             }
             "envmap" => self.environment(&mut props),
@@ -72,7 +81,11 @@ impl<'g> Loader<'g> {
             }
         };
         for (_, medium) in self.children(&mut props, Class::Medium) {
-            props.unsupported(medium.span, "participating media are not supported", "the emitter is without");
+            props.unsupported(
+                medium.span,
+                "participating media are not supported",
+                "the emitter is without",
+            );
         }
         props.finish(self.report());
         self.lights.extend(light);
@@ -93,7 +106,10 @@ impl<'g> Loader<'g> {
         let to_world = props.transform("to_world");
         let position = props.vector("position");
         if position.is_some() && props.has("to_world") {
-            props.error(props.span_of("position"), "`position` and `to_world` exclude each other");
+            props.error(
+                props.span_of("position"),
+                "`position` and `to_world` exclude each other",
+            );
         }
         let from = position.unwrap_or(to_world.translation);
         let intensity = props.take("intensity");
@@ -108,7 +124,11 @@ impl<'g> Loader<'g> {
         let range = "an angle from 0 to `cutoff_angle`";
         let beam = props.float_in("beam_width", 0.75 * angle, range, |v| (0.0..=angle).contains(&v));
         if let Some(texture) = props.take("texture") {
-            props.unsupported(texture.span, "the `texture` of a spot is not supported", "it is ignored");
+            props.unsupported(
+                texture.span,
+                "the `texture` of a spot is not supported",
+                "it is ignored",
+            );
         }
         let kind = LightKind::Spot {
             from: DVec3::ZERO,
@@ -124,7 +144,10 @@ impl<'g> Loader<'g> {
         let to_world = props.transform("to_world");
         let direction = props.vector("direction");
         if direction.is_some() && props.has("to_world") {
-            props.error(props.span_of("direction"), "`direction` and `to_world` exclude each other");
+            props.error(
+                props.span_of("direction"),
+                "`direction` and `to_world` exclude each other",
+            );
         }
         let to = direction.unwrap_or(to_world.transform_vector3(DVec3::Z));
         let to = to.try_normalize().unwrap_or_else(|| {
@@ -141,7 +164,10 @@ impl<'g> Loader<'g> {
         let scale = props.float_in("scale", 1.0, "not negative", |v| v >= 0.0);
         let Some(name) = props.string("filename") else {
             if !props.has("filename") {
-                props.error(props.object.span, "this `envmap` has no `<string name=\"filename\" .../>`");
+                props.error(
+                    props.object.span,
+                    "this `envmap` has no `<string name=\"filename\" .../>`",
+                );
             }
             return None;
         };
@@ -176,7 +202,9 @@ impl<'g> Loader<'g> {
             props.unsupported(props.span_of("irradiance"), message, "it is left out");
             return fov.and(None);
         };
-        let aspect = image.as_ref().map_or(1.0, |image| image.width() as f64 / image.height() as f64);
+        let aspect = image
+            .as_ref()
+            .map_or(1.0, |image| image.width() as f64 / image.height() as f64);
         let x_fov = super::camera::field_of_view(props, aspect)?;
         let half_width = (0.5 * x_fov.to_radians()).tan();
         // The angle of the shorter side.
@@ -196,7 +224,10 @@ impl<'g> Loader<'g> {
         let property = property?;
         let (_, object) = self.texture_of(property)?;
         if object.plugin != "bitmap" {
-            let message = format!("a light whose emission is the texture `{}` is not supported", object.plugin);
+            let message = format!(
+                "a light whose emission is the texture `{}` is not supported",
+                object.plugin
+            );
             props.unsupported(object.span, message, "it is left out");
             return Some(None);
         }
@@ -206,7 +237,11 @@ impl<'g> Loader<'g> {
         bitmap.ignore(&["accel", "format", "filter_type", "wrap_mode"]);
         if bitmap.has("to_uv") {
             bitmap.take("to_uv");
-            bitmap.unsupported(object.span, "`to_uv` of a light's image is not supported", "it is ignored");
+            bitmap.unsupported(
+                object.span,
+                "`to_uv` of a light's image is not supported",
+                "it is ignored",
+            );
         }
         let encoding = if raw { Encoding::Linear } else { Encoding::Srgb };
         let image = match name {

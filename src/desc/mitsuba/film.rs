@@ -56,10 +56,16 @@ impl<'g> Loader<'g> {
         if let Some(format) = props.string("pixel_format")
             && format != "rgb"
         {
-            props.warning(props.span_of("pixel_format"), format!("`pixel_format` is `{format}`: pictures are rgb here"));
+            props.warning(
+                props.span_of("pixel_format"),
+                format!("`pixel_format` is `{format}`: pictures are rgb here"),
+            );
         }
         if props.boolean("sample_border", false) {
-            props.inert(&[("sample_border", "pixels at the border always see what is beside the picture")]);
+            props.inert(&[(
+                "sample_border",
+                "pixels at the border always see what is beside the picture",
+            )]);
         }
         props.ignore(&["compensate"]);
         let filter = self.child(&mut props, Class::Filter);
@@ -81,7 +87,10 @@ fn side(props: &mut Props<'_>, name: &'static str, default: u32) -> u32 {
     if side <= LONGEST_SIDE {
         return side;
     }
-    props.error(props.span_of(name), format!("`{name}` is {side}; expected at most {LONGEST_SIDE}"));
+    props.error(
+        props.span_of(name),
+        format!("`{name}` is {side}; expected at most {LONGEST_SIDE}"),
+    );
     default
 }
 
@@ -95,7 +104,8 @@ fn crop(props: &mut Props<'_>, [width, height]: [u32; 2]) -> CropDesc {
     let x1 = x0.saturating_add(props.count(NAMES[2], 1, width.saturating_sub(x0).max(1)));
     let y1 = y0.saturating_add(props.count(NAMES[3], 1, height.saturating_sub(y0).max(1)));
     if x1 > width || y1 > height {
-        let message = format!("the crop, {x0} to {x1} by {y0} to {y1}, is not all in the picture of {width} x {height} pixels");
+        let message =
+            format!("the crop, {x0} to {x1} by {y0} to {y1}, is not all in the picture of {width} x {height} pixels");
         props.error(props.object.span, message);
         return CropDesc::Full;
     }

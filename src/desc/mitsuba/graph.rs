@@ -89,7 +89,9 @@ impl Graph {
         if let Some(version) = root.attribute("version") {
             match parse_version(&version.value) {
                 Some(numbers) => xml.version = numbers,
-                None => xml.report.error(version.span, "this is no version; expected one like 3.0.0"),
+                None => xml
+                    .report
+                    .error(version.span, "this is no version; expected one like 3.0.0"),
             }
         }
         graph.objects.push(Object {
@@ -173,7 +175,13 @@ impl Graph {
                 if element.check(&mut xml.report, &["name"], &[])
                     && let Some(matrix) = transform::read(element, &mut xml.report)
                 {
-                    self.add(parent, element.attribute("name"), Value::Transform(matrix), element.span, xml);
+                    self.add(
+                        parent,
+                        element.attribute("name"),
+                        Value::Transform(matrix),
+                        element.span,
+                        xml,
+                    );
                 }
                 return;
             }
@@ -201,7 +209,11 @@ impl Graph {
             xml.report.error(name.span, format!("`{text}` is given twice"));
             return;
         }
-        properties.push(Property { name: text, value, span });
+        properties.push(Property {
+            name: text,
+            value,
+            span,
+        });
     }
 
     fn unknown_id(&self, id: &str, span: Span, xml: &mut XmlReader) {
@@ -215,7 +227,9 @@ impl Graph {
         let mut unknown = Vec::new();
         for object in &mut self.objects {
             for property in &mut object.properties {
-                let Value::Reference(id) = &property.value else { continue };
+                let Value::Reference(id) = &property.value else {
+                    continue;
+                };
                 match self.ids.get(id) {
                     Some(&index) => property.value = Value::Object(ObjectIndex(index)),
                     None => unknown.push((id.clone(), property.span)),
@@ -247,7 +261,13 @@ impl Graph {
             }
             settled = now;
         }
-        for (object, _) in self.objects.iter().zip(&settled).skip(1).filter(|(_, settled)| !**settled) {
+        for (object, _) in self
+            .objects
+            .iter()
+            .zip(&settled)
+            .skip(1)
+            .filter(|(_, settled)| !**settled)
+        {
             let message = format!("this object contains itself, or more than {DEEPEST} objects in a row");
             xml.report.error(object.span, message);
         }

@@ -29,7 +29,11 @@ pub(super) fn read<'g>(loader: &mut Loader<'g>, object: &'g Object) -> Integrato
     props.inert(&TECHNICAL);
     props.ignore(&["timeout"]);
     if props.boolean("hide_emitters", false) {
-        props.unsupported(props.span_of("hide_emitters"), "`hide_emitters` is not supported", "emitters are seen");
+        props.unsupported(
+            props.span_of("hide_emitters"),
+            "`hide_emitters` is not supported",
+            "emitters are seen",
+        );
     }
     desc.kind = match object.plugin.as_str() {
         "path" => IntegratorKind::Path(PathDesc::default()),
@@ -61,7 +65,10 @@ pub(super) fn read<'g>(loader: &mut Loader<'g>, object: &'g Object) -> Integrato
         desc.max_depth = max_depth(&mut props);
     }
     for (_, nested) in loader.children(&mut props, Class::Integrator) {
-        props.error(nested.span, format!("`{}` has no other integrator inside", object.plugin));
+        props.error(
+            nested.span,
+            format!("`{}` has no other integrator inside", object.plugin),
+        );
     }
     props.finish(loader.report());
     desc
@@ -75,7 +82,11 @@ fn max_depth(props: &mut Props<'_>) -> Option<u32> {
     match depth {
         -1 => None,
         0 => {
-            props.unsupported(props.span_of("max_depth"), "`max_depth` 0 shows nothing at all", "it is 1");
+            props.unsupported(
+                props.span_of("max_depth"),
+                "`max_depth` 0 shows nothing at all",
+                "it is 1",
+            );
             Some(0)
         }
         1.. if depth <= i64::from(i32::MAX) => Some(depth as u32 - 1),
@@ -115,7 +126,10 @@ fn sppm(props: &mut Props<'_>) -> SppmDesc {
     let photons = props.count("photon_count", 1, 1);
     props.inert(&[
         ("alpha", "the radius shrinks by a law of its own"),
-        ("initial_radius", "the first radius is in proportion to what a pixel sees"),
+        (
+            "initial_radius",
+            "the first radius is in proportion to what a pixel sees",
+        ),
         ("max_passes", "there are as many passes as samples"),
         ("granularity", "it is a matter of speed"),
     ]);

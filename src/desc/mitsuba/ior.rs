@@ -59,7 +59,10 @@ impl<'g> Loader<'g> {
         let (eta, k) = (props.take("eta"), props.take("k"));
         if let Some(name) = material.filter(|name| *name != "none") {
             if eta.is_some() || k.is_some() {
-                props.error(props.span_of("material"), "`material` and `eta` or `k` exclude each other");
+                props.error(
+                    props.span_of("material"),
+                    "`material` and `eta` or `k` exclude each other",
+                );
             }
             if let Some((_, found)) = METALS.iter().find(|(metal, _)| *metal == name) {
                 let part = |which: &str| SpectrumDesc {

@@ -11,8 +11,8 @@ use super::xml::XmlReader;
 use crate::desc::images::{self, PendingImages};
 use crate::desc::report::Report;
 use crate::desc::{
-    ImageDesc, InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MaterialId, MaterialKind, ObjectDesc, ObjectId, SceneDesc,
-    ShapeDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, Textured, ViewDesc,
+    ImageDesc, InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MaterialId, MaterialKind, ObjectDesc, ObjectId,
+    SceneDesc, ShapeDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, Textured, ViewDesc,
 };
 use crate::error::{Error, Result, Span};
 
@@ -87,7 +87,10 @@ impl<'g> Loader<'g> {
             _ => false,
         };
         let found = props.objects(of_class);
-        found.into_iter().filter_map(|property| self.object_of(property, class)).collect()
+        found
+            .into_iter()
+            .filter_map(|property| self.object_of(property, class))
+            .collect()
     }
 
     /// The one object of a class among the properties of another, if there is any; several are an error.

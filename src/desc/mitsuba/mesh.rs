@@ -87,7 +87,11 @@ impl MeshFile {
             "serialized" => (Format::Serialized, false),
             _ => return None,
         };
-        let shape_index = if format == Format::Serialized { props.count("shape_index", 0, 0) } else { 0 };
+        let shape_index = if format == Format::Serialized {
+            props.count("shape_index", 0, 0)
+        } else {
+            0
+        };
         let face_normals = props.boolean("face_normals", false);
         let flips = props.boolean("flip_tex_coords", flips);
         let Some(name) = props.string("filename") else {
@@ -138,7 +142,9 @@ fn smooth_normals(mesh: &MeshDesc) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
     for triangle in &mesh.indices {
         let p = triangle.map(|v| mesh.positions[v as usize]);
-        let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else { continue };
+        let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else {
+            continue;
+        };
         for i in 0..3 {
             let [a, b] = [1, 2].map(|step| (p[(i + step) % 3] - p[i]).normalize_or_zero());
             sums[triangle[i] as usize] += normal * a.angle_between(b);

@@ -85,7 +85,9 @@ impl Parameters {
     }
 
     fn unknown(&self, rest: &str) -> (String, Option<String>) {
-        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let end = rest
+            .find(|c: char| !c.is_alphanumeric() && c != '_')
+            .unwrap_or(rest.len());
         let name = &rest[..end];
         let names: Vec<&str> = self.list.iter().map(|p| p.name.as_str()).collect();
         let help = match suggest::closest(name, &names) {

@@ -25,9 +25,32 @@ pub(super) enum Class {
 
 /// All elements outside transforms.
 pub(super) const TAGS: &[&str] = &[
-    "boolean", "integer", "float", "string", "point", "vector", "rgb", "spectrum", "transform", "ref", "alias", "default",
-    "include", "path", "bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sampler", "sensor", "shape",
-    "texture", "volume",
+    "boolean",
+    "integer",
+    "float",
+    "string",
+    "point",
+    "vector",
+    "rgb",
+    "spectrum",
+    "transform",
+    "ref",
+    "alias",
+    "default",
+    "include",
+    "path",
+    "bsdf",
+    "emitter",
+    "film",
+    "integrator",
+    "medium",
+    "phase",
+    "rfilter",
+    "sampler",
+    "sensor",
+    "shape",
+    "texture",
+    "volume",
 ];
 
 impl Class {
@@ -60,7 +83,15 @@ impl Class {
             Self::Sampler => (SAMPLERS, &[]),
             Self::Sensor => (
                 &["perspective", "thinlens", "orthographic"],
-                &["batch", "distant", "irradiancemeter", "radiancemeter", "volprim_rf_basic", "telecentric", "spherical"],
+                &[
+                    "batch",
+                    "distant",
+                    "irradiancemeter",
+                    "radiancemeter",
+                    "volprim_rf_basic",
+                    "telecentric",
+                    "spherical",
+                ],
             ),
             Self::Shape => (SHAPES, SHAPES_REFUSED),
             Self::Texture => (TEXTURES, TEXTURES_REFUSED),
@@ -71,32 +102,138 @@ impl Class {
 }
 
 const BSDFS: &[&str] = &[
-    "diffuse", "conductor", "dielectric", "thindielectric", "roughconductor", "roughdielectric", "plastic", "roughplastic",
-    "principled", "mask", "twosided", "blendbsdf", "bumpmap", "normalmap", "null",
+    "diffuse",
+    "conductor",
+    "dielectric",
+    "thindielectric",
+    "roughconductor",
+    "roughdielectric",
+    "plastic",
+    "roughplastic",
+    "principled",
+    "mask",
+    "twosided",
+    "blendbsdf",
+    "bumpmap",
+    "normalmap",
+    "null",
 ];
 const BSDFS_REFUSED: &[&str] = &[
-    "principledthin", "measured", "measured_polarized", "pplastic", "polarizer", "retarder", "circular", "hair", "bsdf",
+    "principledthin",
+    "measured",
+    "measured_polarized",
+    "pplastic",
+    "polarizer",
+    "retarder",
+    "circular",
+    "hair",
+    "bsdf",
 ];
-const EMITTERS: &[&str] = &["area", "point", "spot", "directional", "constant", "envmap", "projector"];
-const EMITTERS_REFUSED: &[&str] = &["directionalarea", "sunsky", "sky", "sun", "timed_sunsky", "volumelight", "collimated"];
-const INTEGRATORS: &[&str] = &["path", "direct", "ptracer", "volpath", "volpathmis", "bdpt", "photonmapper", "sppm"];
+const EMITTERS: &[&str] = &[
+    "area",
+    "point",
+    "spot",
+    "directional",
+    "constant",
+    "envmap",
+    "projector",
+];
+const EMITTERS_REFUSED: &[&str] = &[
+    "directionalarea",
+    "sunsky",
+    "sky",
+    "sun",
+    "timed_sunsky",
+    "volumelight",
+    "collimated",
+];
+const INTEGRATORS: &[&str] = &[
+    "path",
+    "direct",
+    "ptracer",
+    "volpath",
+    "volpathmis",
+    "bdpt",
+    "photonmapper",
+    "sppm",
+];
 const INTEGRATORS_REFUSED: &[&str] = &[
-    "aov", "depth", "moment", "stokes", "prb", "prb_basic", "prb_projective", "prbvolpath", "direct_projective",
-    "direct_reparam", "prb_reparam", "emission_reparam", "pssmlt", "mlt", "erpt", "ppm", "irrcache", "adaptive", "vpl", "ao",
+    "aov",
+    "depth",
+    "moment",
+    "stokes",
+    "prb",
+    "prb_basic",
+    "prb_projective",
+    "prbvolpath",
+    "direct_projective",
+    "direct_reparam",
+    "prb_reparam",
+    "emission_reparam",
+    "pssmlt",
+    "mlt",
+    "erpt",
+    "ppm",
+    "irrcache",
+    "adaptive",
+    "vpl",
+    "ao",
 ];
 const SAMPLERS: &[&str] = &[
-    "independent", "stratified", "multijitter", "orthogonal", "ldsampler", "sobol", "halton", "hammersley",
+    "independent",
+    "stratified",
+    "multijitter",
+    "orthogonal",
+    "ldsampler",
+    "sobol",
+    "halton",
+    "hammersley",
 ];
 const SHAPES: &[&str] = &[
-    "rectangle", "cube", "sphere", "disk", "cylinder", "obj", "ply", "serialized", "shapegroup", "instance",
+    "rectangle",
+    "cube",
+    "sphere",
+    "disk",
+    "cylinder",
+    "obj",
+    "ply",
+    "serialized",
+    "shapegroup",
+    "instance",
 ];
 const SHAPES_REFUSED: &[&str] = &[
-    "bsplinecurve", "linearcurve", "sdfgrid", "ellipsoids", "ellipsoidsmesh", "merge", "blender", "hair", "heightfield",
+    "bsplinecurve",
+    "linearcurve",
+    "sdfgrid",
+    "ellipsoids",
+    "ellipsoidsmesh",
+    "merge",
+    "blender",
+    "hair",
+    "heightfield",
 ];
 const TEXTURES: &[&str] = &[
-    "bitmap", "checkerboard", "mesh_attribute", "rgb", "srgb", "srgb_d65", "uniform", "regular", "irregular", "blackbody", "d65",
+    "bitmap",
+    "checkerboard",
+    "mesh_attribute",
+    "rgb",
+    "srgb",
+    "srgb_d65",
+    "uniform",
+    "regular",
+    "irregular",
+    "blackbody",
+    "d65",
 ];
-const TEXTURES_REFUSED: &[&str] = &["volume", "rawconstant", "raw_constant", "curvature", "vertexcolors", "wireframe", "scale"];
+const TEXTURES_REFUSED: &[&str] = &[
+    "volume",
+    "rawconstant",
+    "raw_constant",
+    "curvature",
+    "vertexcolors",
+    "wireframe",
+    "scale",
+];
 
 /// The class that an element makes an object of.
 pub(super) fn class_of(element: &Element) -> Option<Class> {

@@ -124,7 +124,9 @@ impl<'g> Props<'g> {
 
     /// A boolean.
     pub fn boolean(&mut self, name: &'static str, default: bool) -> bool {
-        let Some(property) = self.take(name) else { return default };
+        let Some(property) = self.take(name) else {
+            return default;
+        };
         if let Value::Boolean(value) = property.value {
             return value;
         }
@@ -144,7 +146,9 @@ impl<'g> Props<'g> {
 
     /// One of `choices`, the first by default.
     pub fn choice(&mut self, name: &'static str, choices: &[&'static str]) -> &'static str {
-        let Some(value) = self.string(name) else { return choices[0] };
+        let Some(value) = self.string(name) else {
+            return choices[0];
+        };
         if let Some(choice) = choices.iter().find(|choice| **choice == value) {
             return choice;
         }
@@ -169,7 +173,9 @@ impl<'g> Props<'g> {
 
     /// A matrix; the identity if none is given.
     pub fn matrix(&mut self, name: &'static str) -> DMat4 {
-        let Some(property) = self.take(name) else { return DMat4::IDENTITY };
+        let Some(property) = self.take(name) else {
+            return DMat4::IDENTITY;
+        };
         if let Value::Transform(matrix) = property.value {
             return matrix;
         }
@@ -212,7 +218,8 @@ impl<'g> Props<'g> {
     pub fn inert(&mut self, names: &[(&'static str, &str)]) {
         for (name, why) in names {
             if let Some(property) = self.take(name) {
-                self.warnings.push((property.span, format!("`{name}` has no effect: {why}")));
+                self.warnings
+                    .push((property.span, format!("`{name}` has no effect: {why}")));
             }
         }
     }
@@ -227,7 +234,13 @@ impl<'g> Props<'g> {
     /// Hands over what was found wrong, and complains about what was not asked for.
     pub fn finish(mut self, report: &mut Report) {
         let entity = format!("the {} `{}`", self.object.class.name(), self.object.plugin);
-        for (property, _) in self.object.properties.iter().zip(&self.taken).filter(|(_, taken)| !**taken) {
+        for (property, _) in self
+            .object
+            .properties
+            .iter()
+            .zip(&self.taken)
+            .filter(|(_, taken)| !**taken)
+        {
             let name = &property.name;
             let help = suggest::closest(name, &self.known).map(|name| format!("did you mean `{name}`?"));
             let message = match (&property.value, name.is_empty()) {

@@ -164,7 +164,10 @@ impl<'g> Loader<'g> {
         }
         props.transform("to_world");
         props.finish(self.report());
-        let name = object.id.clone().unwrap_or_else(|| format!("group{}", self.objects.len() + 1));
+        let name = object
+            .id
+            .clone()
+            .unwrap_or_else(|| format!("group{}", self.objects.len() + 1));
         self.objects.push(ObjectDesc {
             name,
             shapes,

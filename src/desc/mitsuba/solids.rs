@@ -14,7 +14,10 @@ pub(super) fn rectangle() -> MeshDesc {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     MeshDesc {
         positions: corners.iter().map(|&[x, y]| Vec3::new(x, y, 0.0)).collect(),
-        uvs: corners.iter().map(|&[x, y]| uv(0.5 * (x + 1.0), 0.5 * (y + 1.0))).collect(),
+        uvs: corners
+            .iter()
+            .map(|&[x, y]| uv(0.5 * (x + 1.0), 0.5 * (y + 1.0)))
+            .collect(),
         indices: vec![[0, 1, 2], [0, 2, 3]],
         ..MeshDesc::default()
     }
@@ -35,11 +38,13 @@ pub(super) fn cube() -> MeshDesc {
     for (normal, along_u, along_v) in faces {
         let first = mesh.positions.len() as u32;
         for (u, v) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
-            mesh.positions.push(normal + along_u * (2.0 * u - 1.0) + along_v * (2.0 * v - 1.0));
+            mesh.positions
+                .push(normal + along_u * (2.0 * u - 1.0) + along_v * (2.0 * v - 1.0));
             mesh.normals.push(normal);
             mesh.uvs.push(uv(u, v));
         }
-        mesh.indices.extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|v| first + v)));
+        mesh.indices
+            .extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|v| first + v)));
     }
     mesh
 }
@@ -73,7 +78,9 @@ pub(super) fn cylinder() -> MeshDesc {
             mesh.uvs.push(uv(turn, z));
         }
     }
-    mesh.indices = (0..SIDES).flat_map(|side| [[0, 2, 3], [0, 3, 1]].map(|t| t.map(|v| 2 * side + v))).collect();
+    mesh.indices = (0..SIDES)
+        .flat_map(|side| [[0, 2, 3], [0, 3, 1]].map(|t| t.map(|v| 2 * side + v)))
+        .collect();
     mesh
 }
 
@@ -107,7 +114,10 @@ mod tests {
         assert!((volume - 8.0).abs() < 1e-5 && (area - 24.0).abs() < 1e-5);
         let (volume, area) = volume_and_area(&cylinder());
         // Without its lower end in the origin's plane; the upper end's cone of volume pi / 3 is missing.
-        assert!((volume - TAU / 3.0).abs() < 1e-3 && (area - TAU).abs() < 1e-3, "{volume} {area}");
+        assert!(
+            (volume - TAU / 3.0).abs() < 1e-3 && (area - TAU).abs() < 1e-3,
+            "{volume} {area}"
+        );
         let (_, area) = volume_and_area(&disk());
         assert!((area - 0.5 * TAU).abs() < 1e-3);
         for mesh in [rectangle(), disk()] {

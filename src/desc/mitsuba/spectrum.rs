@@ -45,7 +45,11 @@ impl<'g> Loader<'g> {
                 self.spectrum_plugin(object)?
             }
             other => {
-                let message = format!("`{}` is {}; expected a spectrum or texture", property.name, other.kind());
+                let message = format!(
+                    "`{}` is {}; expected a spectrum or texture",
+                    property.name,
+                    other.kind()
+                );
                 self.report().error(property.span, message);
                 return None;
             }
@@ -106,7 +110,9 @@ impl<'g> Loader<'g> {
         let span = props.object.span;
         let list = |props: &mut Props<'g>, name: &'static str| -> Option<Vec<f64>> {
             let text = props.string(name)?;
-            let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|w| !w.is_empty());
+            let words = text
+                .split(|c: char| c == ',' || c.is_whitespace())
+                .filter(|w| !w.is_empty());
             let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
             if numbers.is_none() {
                 props.error(span, format!("`{name}` is no list of numbers"));
@@ -117,7 +123,10 @@ impl<'g> Loader<'g> {
         let wavelengths = if props.object.plugin == "irregular" {
             list(props, "wavelengths")
         } else {
-            let (first, last) = (props.positive("wavelength_min", 360.0), props.positive("wavelength_max", 830.0));
+            let (first, last) = (
+                props.positive("wavelength_min", 360.0),
+                props.positive("wavelength_max", 830.0),
+            );
             let count = values.as_ref().map_or(0, Vec::len);
             let step = |i: usize| first + (last - first) * i as f64 / (count.max(2) - 1) as f64;
             Some((0..count).map(step).collect())
@@ -127,7 +136,11 @@ impl<'g> Loader<'g> {
             return None;
         };
         if wavelengths.len() != values.len() {
-            let message = format!("there are {} wavelengths and {} values", wavelengths.len(), values.len());
+            let message = format!(
+                "there are {} wavelengths and {} values",
+                wavelengths.len(),
+                values.len()
+            );
             props.error(span, message);
             return None;
         }

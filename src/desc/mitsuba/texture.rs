@@ -8,16 +8,24 @@ use super::plugins::Class;
 use super::props::Props;
 use super::spectrum::Use;
 use crate::desc::{
-    ClassedTexture, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId,
-    TextureKind, Textured, WrapDesc,
+    ClassedTexture, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, SpectrumDesc, SpectrumValue, TextureDesc,
+    TextureId, TextureKind, Textured, WrapDesc,
 };
 use crate::error::Span;
 use crate::image_io::Encoding;
 
 impl<'g> Loader<'g> {
     /// A spectrum or a texture of spectra; `default` without the property, and where it is wrong.
-    pub fn color(&mut self, property: Option<&'g Property>, default: f32, span: Span, usage: Use) -> Textured<SpectrumDesc> {
-        let Some(property) = property else { return constant(default, span) };
+    pub fn color(
+        &mut self,
+        property: Option<&'g Property>,
+        default: f32,
+        span: Span,
+        usage: Use,
+    ) -> Textured<SpectrumDesc> {
+        let Some(property) = property else {
+            return constant(default, span);
+        };
         if let Some((index, object)) = self.texture_of(property) {
             return match self.texture(index, object, true) {
                 Some(id) => Textured::Texture(id),
@@ -30,7 +38,9 @@ impl<'g> Loader<'g> {
 
     /// A number or a texture of numbers, in [0, 1] if it is one.
     pub fn number(&mut self, property: Option<&'g Property>, default: f32) -> Textured<f32> {
-        let Some(property) = property else { return Textured::Value(default) };
+        let Some(property) = property else {
+            return Textured::Value(default);
+        };
         if let Some((index, object)) = self.texture_of(property) {
             return match self.texture(index, object, false) {
                 Some(id) => Textured::Texture(id),
@@ -63,8 +73,12 @@ impl<'g> Loader<'g> {
 
     /// The texture that a property is, if it is one that varies.
     pub fn texture_of(&self, property: &Property) -> Option<(ObjectIndex, &'g Object)> {
-        self.object_of(property, Class::Texture)
-            .filter(|(_, object)| !matches!(object.plugin.as_str(), "rgb" | "srgb" | "srgb_d65" | "uniform" | "regular" | "irregular" | "blackbody" | "d65"))
+        self.object_of(property, Class::Texture).filter(|(_, object)| {
+            !matches!(
+                object.plugin.as_str(),
+                "rgb" | "srgb" | "srgb_d65" | "uniform" | "regular" | "irregular" | "blackbody" | "d65"
+            )
+        })
     }
 
     /// A texture of spectra or of numbers, each translated once.
@@ -83,8 +97,10 @@ impl<'g> Loader<'g> {
             }
             "checkerboard" => self.checkerboard(object, of_spectra),
             "mesh_attribute" => {
-                let message = "the texture `mesh_attribute` is not supported: meshes are read without further attributes";
-                self.report().unsupported(object.span, message, "a grey of 0.5 stands in");
+                let message =
+                    "the texture `mesh_attribute` is not supported: meshes are read without further attributes";
+                self.report()
+                    .unsupported(object.span, message, "a grey of 0.5 stands in");
                 return None;
             }
             _ => {
@@ -151,7 +167,10 @@ impl<'g> Loader<'g> {
         let raw = props.boolean("raw", false);
         let Some(name) = props.string("filename") else {
             if !props.has("filename") {
-                props.error(props.object.span, "this `bitmap` has no `<string name=\"filename\" .../>`");
+                props.error(
+                    props.object.span,
+                    "this `bitmap` has no `<string name=\"filename\" .../>`",
+                );
             }
             return None;
         };

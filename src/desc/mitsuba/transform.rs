@@ -77,12 +77,18 @@ fn look_at(element: &Element, report: &mut Report) -> Option<DMat4> {
         Some(DVec3::new(values[0], values[1], values[2]))
     };
     let (origin, target) = (point("origin")?, point("target")?);
-    let up = if element.attribute("up").is_some() { Some(point("up")?) } else { None };
+    let up = if element.attribute("up").is_some() {
+        Some(point("up")?)
+    } else {
+        None
+    };
     let Some(forward) = (target - origin).try_normalize() else {
         report.error(element.span, "`origin` and `target` of <lookat> must differ");
         return None;
     };
-    let up = up.filter(|up| *up != DVec3::ZERO).unwrap_or_else(|| forward.any_orthogonal_vector());
+    let up = up
+        .filter(|up| *up != DVec3::ZERO)
+        .unwrap_or_else(|| forward.any_orthogonal_vector());
     let left = up.normalize().cross(forward);
     if left.length() < 1e-9 {
         report.error(element.span, "`up` of <lookat> must not be along the view");

@@ -52,7 +52,8 @@ pub(super) fn numbers(attribute: &Attribute, counts: &[usize], report: &mut Repo
 }
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty())
+    text.split(|c: char| c == ',' || c.is_whitespace())
+        .filter(|word| !word.is_empty())
 }
 
 /// The longest file of a spectrum that is read.
@@ -163,7 +164,10 @@ mod tests {
 
     #[test]
     fn pairs_are_split_whatever_the_spaces() {
-        let pairs: Vec<String> = "400:0.1, 500 : 0.2 ,600: 0.3 700:0.4".split(',').flat_map(split_pairs).collect();
+        let pairs: Vec<String> = "400:0.1, 500 : 0.2 ,600: 0.3 700:0.4"
+            .split(',')
+            .flat_map(split_pairs)
+            .collect();
         assert_eq!(pairs, ["400:0.1", "500:0.2", "600:0.3", "700:0.4"]);
         assert_eq!(
             pairs_of_lines("# c\n400 1\n 500, 2 # x\n\n"),

@@ -134,7 +134,9 @@ impl XmlReader {
                 let pos = e.pos();
                 let line = text.split_inclusive('\n').take(pos.row.saturating_sub(1) as usize);
                 let line_start: usize = line.map(str::len).sum();
-                let column = text[line_start..].char_indices().nth(pos.col.saturating_sub(1) as usize);
+                let column = text[line_start..]
+                    .char_indices()
+                    .nth(pos.col.saturating_sub(1) as usize);
                 let at = column.map_or(text.len(), |(at, _)| line_start + at);
                 // The crate ends its messages with the place, which is said already.
                 let message = e.to_string();
@@ -187,14 +189,21 @@ impl XmlReader {
             }
             if child.is_text() && !child.text().unwrap_or_default().trim().is_empty() {
                 let text = child.range();
-                let start = text.start + child.text().unwrap_or_default().find(|c: char| !c.is_whitespace()).unwrap_or(0);
+                let start = text.start
+                    + child
+                        .text()
+                        .unwrap_or_default()
+                        .find(|c: char| !c.is_whitespace())
+                        .unwrap_or(0);
                 let message = format!("text inside <{}>: values are given by attributes", element.tag);
                 self.report.error(span(start..text.end.max(start + 1)), message);
             }
             if !child.is_element() {
                 continue;
             }
-            let Some(child) = self.element(child, file) else { continue };
+            let Some(child) = self.element(child, file) else {
+                continue;
+            };
             self.place(&mut element, child);
         }
         Some(element)
@@ -286,7 +295,10 @@ fn too_deep(text: &str) -> Option<usize> {
             at = text[start..].find("-->").map_or(bytes.len(), |end| start + end + 3);
             continue;
         }
-        let end = bytes[start..].iter().position(|&b| b == b'>').map_or(bytes.len(), |i| start + i);
+        let end = bytes[start..]
+            .iter()
+            .position(|&b| b == b'>')
+            .map_or(bytes.len(), |i| start + i);
         match bytes.get(start + 1) {
             Some(b'/') => depth = depth.saturating_sub(1),
             Some(b'?' | b'!') | None => {}

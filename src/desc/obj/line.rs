@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 /// What a line says.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Line<'a> {
     Position(Vec3),
     TextureCoordinates(Vec2),

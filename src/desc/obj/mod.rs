@@ -108,10 +108,14 @@ impl Reader {
             self.polygon.push(vertex);
         }
         if self.polygon.len() < 3 {
-            return Err(format!("a face has 3 corners at least, this one {}", self.polygon.len()));
+            return Err(format!(
+                "a face has 3 corners at least, this one {}",
+                self.polygon.len()
+            ));
         }
         let first = self.polygon[0];
-        self.indices.extend(self.polygon[1..].windows(2).map(|pair| [first, pair[0], pair[1]]));
+        self.indices
+            .extend(self.polygon[1..].windows(2).map(|pair| [first, pair[0], pair[1]]));
         Ok(())
     }
 
@@ -123,8 +127,16 @@ impl Reader {
         let all = |i: usize| self.corners.iter().all(|corner| corner[i] != 0);
         let pick = |i: usize| self.corners.iter().map(move |corner| corner[i] as usize - 1);
         let positions = pick(0).map(|at| self.positions[at]).collect();
-        let uvs = if all(1) { pick(1).map(|at| self.uvs[at]).collect() } else { Vec::new() };
-        let normals = if all(2) { pick(2).map(|at| self.normals[at]).collect() } else { Vec::new() };
+        let uvs = if all(1) {
+            pick(1).map(|at| self.uvs[at]).collect()
+        } else {
+            Vec::new()
+        };
+        let normals = if all(2) {
+            pick(2).map(|at| self.normals[at]).collect()
+        } else {
+            Vec::new()
+        };
         Ok(MeshDesc {
             positions,
             uvs,
@@ -141,7 +153,8 @@ mod tests {
 
     #[test]
     fn polygons_become_fans_and_corners_vertices() {
-        let text = b"# a square\r\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvn 0 0 1\no x\n\
+        let text =
+            b"# a square\r\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvn 0 0 1\no x\n\
                      f 1/1/1 2/2/1 3/3/1 4/4/1\nf -4/-4/-1 -2/-2/-1 -1/-1/-1\n";
         let mesh = parse(text).unwrap();
         assert_eq!(mesh.indices, [[0, 1, 2], [0, 2, 3], [0, 2, 3]]);

@@ -8,8 +8,8 @@ use super::builder::Builder;
 use super::files::Context;
 use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
-use super::world::{RawShape, Slot, World, default_material};
 use super::suggest;
+use super::world::{RawShape, Slot, World, default_material};
 use crate::desc::{
     InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc,
     ShapeKind, ply,

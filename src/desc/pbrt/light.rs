@@ -13,8 +13,8 @@ use crate::desc::kinds::lights::{
     IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
 };
 use crate::desc::{
-    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, SpotFalloff, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
-    SpectrumValue,
+    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
+    SpectrumValue, SpotFalloff,
 };
 use crate::image_io::{self, Image};
 use crate::sampling::SphereMap;
