@@ -59,8 +59,11 @@ impl PlasticTables {
         let transmittance = (0..COSINES)
             .map(|i| transmitted(&rough, cosine(i).max(1e-6), eta))
             .collect();
-        let middle = |i: usize| (i as f32 + 0.5) / COSINES as f32;
-        let internal = (0..COSINES).map(|i| 2.0 * reflected(&rough, middle(i), 1.0 / eta) * middle(i));
+        // As in Mitsuba the mean over the entries of the table, both ends included, for the integral: 1.6 % less.
+        let internal = (0..COSINES).map(|i| {
+            let cos = cosine(i).max(1e-6);
+            2.0 * reflected(&rough, cos, 1.0 / eta) * cos
+        });
         Self {
             eta,
             facets,
@@ -269,12 +272,8 @@ mod tests {
     fn a_nearly_smooth_boundary_is_like_a_smooth_one() {
         let facets = Microfacets::new(Distribution::Ggx, 0.01, 0.01);
         let (smooth, rough) = (PlasticTables::new(1.49, None), PlasticTables::new(1.49, facets));
-        assert!(
-            (smooth.internal - rough.internal).abs() < 5e-3,
-            "{} and {}",
-            smooth.internal,
-            rough.internal
-        );
+        let ratio = rough.internal / smooth.internal;
+        assert!((0.975..0.995).contains(&ratio), "{ratio}");
         for cos in [0.2, 0.6, 1.0] {
             let (a, b) = (smooth.transmittance(cos), rough.transmittance(cos));
             assert!((a - b).abs() < 5e-3, "{cos}: {a} and {b}");

@@ -96,7 +96,7 @@ impl<'g> Loader<'g> {
                 let mut half = half_width / aspect.max(1.0);
                 if offset != [0.0, 0.0] {
                     // The screen plane is as wide as from -1 to 1, x to the right and y up.
-                    let [x, y] = [-2.0 * offset[0], 2.0 * offset[1] / aspect];
+                    let [x, y] = [2.0 * offset[0], -2.0 * offset[1] / aspect];
                     screen = Some([-1.0 + x, 1.0 + x, -1.0 / aspect + y, 1.0 / aspect + y]);
                     half = half_width;
                 }

@@ -1,15 +1,17 @@
 //! Emitters: those of shapes, and those that stand alone.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::graph::{Object, Property};
+use super::light_image;
 use super::loader::Loader;
 use super::plugins::Class;
 use super::props::Props;
 use crate::desc::{AreaLightDesc, LightDesc, LightKind, MotionDesc, SpectrumDesc, SpotFalloff};
 use crate::error::Error;
 use crate::image_io::{self, Encoding, Image};
-use std::sync::Arc;
 
 impl<'g> Loader<'g> {
     /// The emitter of a shape.
@@ -34,7 +36,7 @@ impl<'g> Loader<'g> {
         props.ignore(&["sampling_weight"]);
         let image = self.light_image(&mut props, radiance);
         let light = match image {
-            Some(image) => image.map(|image| (None, Some(image), 1.0)),
+            Some(image) => image.map(|image| (None, Some(Arc::new(light_image::smooth(&image))), 1.0)),
             None => self
                 .emission(radiance, object.span)
                 .map(|(l, scale)| (Some(l), None, scale)),
@@ -172,17 +174,10 @@ impl<'g> Loader<'g> {
             return None;
         };
         let image = self.read_light_image(props, name, Encoding::Srgb)?;
-        if image.width() != 2 * image.height() {
-            let message = format!(
-                "an `envmap` twice as wide as high is supported; this one has {} x {} pixels",
-                image.width(),
-                image.height()
-            );
-            props.unsupported(props.span_of("filename"), message, "it is left out");
-            return None;
-        }
-        // Mitsuba's pole is +y, and the middle of the picture is at -z... of pbrt's convention the pole is +z.
-        let turn = DMat3::from_cols(DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y);
+        props.ignore(&["mis_compensation"]);
+        let image = Arc::new(light_image::environment(&image));
+        // Mitsuba's pole is +y, and the left edge of the picture is at -z; pbrt's are +z and +x.
+        let turn = DMat3::from_cols(DVec3::NEG_Z, DVec3::X, DVec3::Y);
         let kind = LightKind::Infinite {
             image: Some(image),
             portal: None,
@@ -209,8 +204,9 @@ impl<'g> Loader<'g> {
         let half_width = (0.5 * x_fov.to_radians()).tan();
         // The angle of the shorter side.
         let half = half_width / aspect.max(1.0);
+        let half_size = [half_width, half_width / aspect];
         let kind = LightKind::Projection {
-            image: image?,
+            image: Arc::new(light_image::projected(image.as_deref()?, half_size)),
             fov: (2.0 * half.atan()).to_degrees(),
         };
         // To the left is +x.

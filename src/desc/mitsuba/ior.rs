@@ -82,9 +82,7 @@ impl<'g> Loader<'g> {
             return Metal::Named(copper("eta", span), copper("k", span));
         }
         match (eta, k) {
-            // Mitsuba's perfect mirror.
-            (None, None) if material.is_some() => Metal::Mirror,
-            (None, None) => Metal::Named(copper("eta", span), copper("k", span)),
+            (None, None) => Metal::Mirror,
             (Some(eta), Some(k)) => Metal::Typed(eta, k),
             _ => {
                 props.error(span, "a metal has either both of `eta` and `k`, or neither");

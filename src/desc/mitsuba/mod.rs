@@ -21,6 +21,7 @@ mod film;
 mod graph;
 mod integrator;
 mod ior;
+mod light_image;
 mod loader;
 mod mesh;
 mod parameters;

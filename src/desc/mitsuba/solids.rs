@@ -26,14 +26,14 @@ pub(super) fn rectangle() -> MeshDesc {
 /// From (-1, -1, -1) to (1, 1, 1), facing outwards.
 pub(super) fn cube() -> MeshDesc {
     let mut mesh = MeshDesc::default();
-    // The normal and the directions of u and v of each face.
+    // The normal of each face, and the directions of its u and v.
     let faces = [
-        (Vec3::Y, Vec3::X, Vec3::NEG_Z),
-        (Vec3::NEG_Y, Vec3::X, Vec3::Z),
-        (Vec3::X, Vec3::NEG_Z, Vec3::Y),
-        (Vec3::NEG_X, Vec3::Z, Vec3::Y),
-        (Vec3::Z, Vec3::X, Vec3::Y),
-        (Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y),
+        (Vec3::NEG_Y, Vec3::Z, Vec3::X),
+        (Vec3::Y, Vec3::Z, Vec3::NEG_X),
+        (Vec3::X, Vec3::Y, Vec3::NEG_Z),
+        (Vec3::Z, Vec3::Y, Vec3::X),
+        (Vec3::NEG_X, Vec3::Y, Vec3::Z),
+        (Vec3::NEG_Z, Vec3::NEG_Y, Vec3::X),
     ];
     for (normal, along_u, along_v) in faces {
         let first = mesh.positions.len() as u32;

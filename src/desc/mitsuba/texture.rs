@@ -131,7 +131,8 @@ impl<'g> Loader<'g> {
             let textures = [0, 1].map(|i| self.color(colors[i], defaults[i], object.span, Use::Unbounded));
             ClassedTexture::Spectrum(TextureKind::Checkerboard2 { textures, mapping })
         } else {
-            let textures = [0, 1].map(|i| self.number(colors[i], defaults[i]));
+            // As in Mitsuba, numbers are the other way round than colors.
+            let textures = [1, 0].map(|i| self.number(colors[i], defaults[i]));
             ClassedTexture::Float(TextureKind::Checkerboard2 { textures, mapping })
         }
     }
