@@ -3,6 +3,7 @@
 //! The library never prints and never exits: it returns an [`Error`], and `main` alone prints it and picks the exit code.
 
 use std::fmt;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -98,25 +99,7 @@ impl SourceMap {
     /// A diagnostic at `span`, with the line it points into.
     pub fn diagnostic(&self, severity: Severity, span: Span, message: String) -> Diagnostic {
         let (path, text) = &self.files[span.file as usize];
-        let start = (span.start as usize).min(text.len());
-        let line_start = text[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
-        let line_end = text[start..]
-            .iter()
-            .position(|&b| b == b'\n')
-            .map_or(text.len(), |i| start + i);
-        let chars = |bytes: &[u8]| String::from_utf8_lossy(bytes).chars().count();
-        Diagnostic {
-            severity,
-            path: path.to_path_buf(),
-            line: 1 + text[..start].iter().filter(|&&b| b == b'\n').count(),
-            column: 1 + chars(&text[line_start..start]),
-            width: chars(&text[start..(span.end as usize).clamp(start, line_end)]).max(1),
-            source_line: String::from_utf8_lossy(&text[line_start..line_end])
-                .trim_end()
-                .to_owned(),
-            message,
-            help: None,
-        }
+        Diagnostic::new(severity, path, text, span.start as usize..span.end as usize, message)
     }
 }
 
@@ -148,6 +131,31 @@ pub struct Diagnostic {
     pub message: String,
     /// What to do about it ("did you mean ...?").
     pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// About the bytes `place` of the `text` of a file, with the line that they begin in.
+    pub fn new(severity: Severity, path: &Path, text: &[u8], place: Range<usize>, message: String) -> Self {
+        let start = place.start.min(text.len());
+        let line_start = text[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+        let line_end = text[start..]
+            .iter()
+            .position(|&b| b == b'\n')
+            .map_or(text.len(), |i| start + i);
+        let chars = |bytes: &[u8]| String::from_utf8_lossy(bytes).chars().count();
+        Self {
+            severity,
+            path: path.to_owned(),
+            line: 1 + text[..start].iter().filter(|&&b| b == b'\n').count(),
+            column: 1 + chars(&text[line_start..start]),
+            width: chars(&text[start..place.end.clamp(start, line_end)]).max(1),
+            source_line: String::from_utf8_lossy(&text[line_start..line_end])
+                .trim_end()
+                .to_owned(),
+            message,
+            help: None,
+        }
+    }
 }
 
 /// The longest part of a source line that a diagnostic shows: a mesh may well be one line of a megabyte.

@@ -6,7 +6,7 @@
 //! scene file -> SceneDesc -> Scene(backend) + View -> Integrator -> Film -> image file
 //!   desc/                     scene/                  integrator/   film/   image_io/
 //!                               |  accel/ (Embree | BVH), by packets of rays
-//!                               |  material/  light/  camera/  texture/
+//!                               |  material/  light/  camera/  texture/  medium/
 //! ```
 //!
 //! Imports go upward only in this list; modules on one line do not import each other (`tests/architecture.rs` checks it):
@@ -15,7 +15,7 @@
 //! 2. [`sampling`] [`spectrum`] [`image_io`]
 //! 3. [`desc`] [`geometry`]
 //! 4. [`texture`]
-//! 5. [`accel`]
+//! 5. [`accel`] [`medium`]
 //! 6. [`material`] [`light`] [`camera`] [`film`]
 //! 7. [`scene`]
 //! 8. [`integrator`]
@@ -51,6 +51,7 @@ pub mod integrator;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod medium;
 pub mod sampling;
 pub mod scene;
 pub mod spectrum;

@@ -27,6 +27,7 @@ fn image_of(directory: &TempDir, rgb: [f32; 3], space: ColorSpace) -> String {
         render_seconds: 0.0,
         scene_hash: String::new(),
         chromaticities: [red, green, blue, space.white()].map(|xy| xy.map(|c| c as f32)),
+        is_spectral: false,
     };
     write(&path, &image, &metadata);
     format!("\"string filename\" \"{}\"", path.display())

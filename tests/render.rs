@@ -378,3 +378,47 @@ fn light_samplers_give_the_same_picture() {
         }
     }
 }
+
+/// A scene that is written to a file and read again gives the same picture, bit by bit.
+#[test]
+fn a_written_scene_gives_the_same_bits() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let file = folder.path().join("again.pbrt");
+    let everything = everything("PixelFilter \"mitchell\" \"float xradius\" 1.7");
+    let fog = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fog.pbrt")).expect("a scene");
+    for text in [everything, fog] {
+        let desc = parse(&text);
+        lucerna::desc::pbrt::write(&desc, &file).unwrap_or_else(|e| panic!("{e}"));
+        let again = load(&file, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        let overrides = ViewOverrides {
+            resolution: Some([75, 50]),
+            spp: Some(2),
+            ..ViewOverrides::default()
+        };
+        let [picture, other] = [desc, again].map(|desc| {
+            let built = Built::new(desc, Backend::Bvh, ColorMode::Spectral);
+            built.picture(&built.view(0, &overrides))
+        });
+        assert!(picture.iter().any(|&v| v > 0.0) && picture == other);
+    }
+}
+
+/// A scene of pbrt-v3 is the same picture as what pbrt-v4 has for it.
+#[test]
+fn the_cornell_box_of_pbrt_v3_is_the_same_picture() {
+    let Some(scenes) = common::shared("scenes") else { return };
+    let [old, new] = ["scene.pbrt", "scene-v4.pbrt"].map(|name| {
+        let desc = load(&scenes.join("cornell-box").join(name), &ParseOptions::default());
+        let built = Built::new(desc.expect("a scene"), Backend::default(), ColorMode::Spectral);
+        let overrides = ViewOverrides {
+            resolution: Some([48, 48]),
+            spp: Some(4),
+            ..ViewOverrides::default()
+        };
+        // The files ask for other depths.
+        let integrator = Integrator::from_desc(&built.desc.integrator).with_max_depth(Some(5));
+        built.picture_with(&built.view(0, &overrides), integrator).0
+    });
+    assert_eq!(old, new);
+    assert!(old.iter().any(|&value| value > 1.0));
+}

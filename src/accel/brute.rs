@@ -75,8 +75,8 @@ impl Brute {
                         query.offer(&candidate(t), || ray.shear.barycentrics(&corners));
                     }
                 }
-                Shape::Spheres(spheres) => {
-                    query.offer_sphere(&spheres[primitive], ray, candidate);
+                shape => {
+                    query.offer_analytic(shape, primitive, ray, candidate);
                 }
             }
         }

@@ -43,9 +43,9 @@ pub struct FilterHit {
     pub primitive: PrimitiveId,
     /// The instance, unless the geometry is in world space.
     pub instance: Option<InstanceId>,
-    /// Barycentric coordinate of the second vertex; of a sphere, 0.
+    /// Barycentric coordinate of the second vertex; of what is no triangle, 0.
     pub u: f32,
-    /// Barycentric coordinate of the third vertex; of a sphere, 0.
+    /// Barycentric coordinate of the third vertex; of what is no triangle, 0.
     pub v: f32,
     /// Distance in units of the ray's direction.
     pub t: f32,

@@ -3,23 +3,24 @@
 //! The value of a pixel (without filter) is the integral of W_e(o, w) L(o, w) cos θ over the points o of the plane of the lens, by
 //! area, and directions w, by solid angle; θ is the angle at the lens. W_e is the importance (Veach 1997, chapter 4). A camera
 //! sample, uniform over the pixel and the numbers of the lens, has a density p(o) p(w | o); it estimates the same integral by its
-//! [`Camera::importance`] I times L, so that
+//! [`Camera::importance`](super::Camera::importance) I times L, so that
 //!
 //! ```text
 //! W_e cos θ = I p(o) p(w | o).
 //! ```
 //!
-//! Seen from the scene, there are two kinds of cameras, as of lights:
+//! Seen from the scene, there are two kinds of cameras with a flat screen, as of lights (light paths do not reach cameras behind lenses):
 //!
 //! - A perspective camera is like an area light, or a point. The lens number chooses o, with p(o) = 1 / area of the lens; the film
 //!   position then chooses w: with d = (x, y, 1) the direction in camera space, the solid angle of dx dy is |det M| / |M d|³ dx dy
 //!   where M takes camera space to the world, and one pixel is A = dx dy. So p(w | o) = |M d|³ / (A |det M|), which is
 //!   1 / (A cos³ θ) if M is a rigid motion, and W_e is 1 / (A A_lens cos⁴ θ).
+//! - A spherical camera is like a point too; what a film position means is in `spherical.rs`.
 //! - An orthographic camera is like a distant light, or an environment seen through a disk. The lens number chooses w, as all rays
 //!   through one point of the lens are parallel: from o = s + l on the plane of the lens to the plane of focus behind s, d = (-l / f, 1).
 //!   The film position then chooses o, with p(o) = 1 / (area of the pixel).
 
-use super::Camera;
+use super::planar::Planar;
 use crate::math::{Vec2, Vec3};
 use crate::sampling::{AreaPdf, SolidAnglePdf};
 
@@ -74,7 +75,7 @@ pub struct CameraRay {
     /// Importance W_e, by area of the plane of the lens and solid angle; where a density is [`CameraDensity::Delta`], the factor of
     /// that delta function.
     pub we: f32,
-    /// What a camera sample on this ray counts besides the filter: [`Camera::importance`].
+    /// What a camera sample on this ray counts besides the filter: [`Camera::importance`](super::Camera::importance).
     pub importance: f32,
     /// Density p(o) by area of the point where the ray crosses the plane of the lens. Delta for a perspective camera without a lens.
     pub position: CameraDensity<AreaPdf>,
@@ -84,7 +85,7 @@ pub struct CameraRay {
     /// surface that faces the ray; on another it is this times |cos| of the angle between its normal and the ray.
     ///
     /// It is all that weights need, for any camera: the ratio of the densities of the camera subpath of this one vertex and of
-    /// the connection that [`Camera::sample_wi`] makes to the lens.
+    /// the connection that [`Camera::sample_wi`](super::Camera::sample_wi) makes to the lens.
     pub arrival: AreaPdf,
 }
 
@@ -123,82 +124,52 @@ struct LocalRay {
     depth: f32,
 }
 
-impl Camera {
-    /// Whether it stays where it is.
-    pub fn is_static(&self) -> bool {
-        self.world_from_camera.is_static()
+impl Planar {
+    /// See [`super::Camera::sample_wi`].
+    #[inline]
+    pub fn sample_wi(&self, pose: &Pose, p: Vec3, u_lens: Vec2, domain: &RasterDomain) -> Option<CameraConnection> {
+        let local = pose.camera_from_world.transform_point3(p.as_dvec3());
+        if !self.sees_depth(local.z) {
+            return None;
+        }
+        let lens = self.lens_point(u_lens);
+        let across = local.truncate();
+        let (origin, direction) = if self.perspective {
+            (lens, ((across - lens.as_dvec2()) / local.z).as_vec2())
+        } else {
+            let direction = self.parallel_direction(lens);
+            ((across - direction.as_dvec2() * local.z).as_vec2(), direction)
+        };
+        let local = LocalRay {
+            origin,
+            direction,
+            depth: local.z as f32,
+        };
+        let film = self.film_of(&local);
+        domain.contains(film).then(|| self.connection(pose, &local, film))
     }
 
-    /// The scene time at which the shutter has been open for the share `u` of its time (see [`super::CameraSample::time`]).
+    /// See [`super::Camera::pdf_we`].
     #[inline]
-    pub fn scene_time(&self, u: f32) -> f32 {
-        (self.shutter[0] + u * (self.shutter[1] - self.shutter[0])).clamp(0.0, 1.0)
-    }
-
-    /// Connects the point `p` to the camera at scene time `time`; `u_lens` are the numbers of a [`super::CameraSample`]: they choose
-    /// the point of the lens (perspective) or the direction (orthographic), without a lens nothing.
-    ///
-    /// `None` if `p` is behind the camera or before its near plane, or if no pixel of `domain` sees it.
-    #[inline]
-    pub fn sample_wi(&self, p: Vec3, time: f32, u_lens: Vec2, domain: &RasterDomain) -> Option<CameraConnection> {
-        self.with_pose(time, |pose| {
-            let local = pose.camera_from_world.transform_point3(p.as_dvec3());
-            if !self.sees_depth(local.z) {
-                return None;
-            }
-            let lens = self.lens_point(u_lens);
-            let across = local.truncate();
-            let (origin, direction) = if self.perspective {
-                (lens, ((across - lens.as_dvec2()) / local.z).as_vec2())
-            } else {
-                let direction = self.parallel_direction(lens);
-                ((across - direction.as_dvec2() * local.z).as_vec2(), direction)
-            };
-            let local = LocalRay {
-                origin,
-                direction,
-                depth: local.z as f32,
-            };
-            let film = self.film_of(&local);
-            domain.contains(film).then(|| self.connection(pose, &local, film))
-        })
-    }
-
-    /// What the camera has to do with the ray in the direction `w` (unit length) that meets the point `p`, in front of it, at scene
-    /// time `time`. It must be one of its rays: that it crosses the lens, or has the one direction that there is, is not checked,
-    /// nor that a pixel sees it.
-    ///
-    /// `None` if `p` is behind the camera or before its near plane, or `w` goes back to it.
-    #[inline]
-    pub fn pdf_we(&self, p: Vec3, w: Vec3, time: f32) -> Option<CameraRay> {
-        self.with_pose(time, |pose| {
-            let local = pose.camera_from_world.transform_point3(p.as_dvec3());
-            let direction = pose.camera_from_world.transform_vector3(w.as_dvec3());
-            if !(self.sees_depth(local.z) && direction.z > 0.0) {
-                return None;
-            }
-            let slope = direction.truncate() / direction.z;
-            let local = LocalRay {
-                origin: (local.truncate() - slope * local.z).as_vec2(),
-                direction: slope.as_vec2(),
-                depth: local.z as f32,
-            };
-            Some(self.camera_ray(pose, &local, self.film_of(&local)))
-        })
+    pub fn pdf_we(&self, pose: &Pose, p: Vec3, w: Vec3) -> Option<CameraRay> {
+        let local = pose.camera_from_world.transform_point3(p.as_dvec3());
+        let direction = pose.camera_from_world.transform_vector3(w.as_dvec3());
+        if !(self.sees_depth(local.z) && direction.z > 0.0) {
+            return None;
+        }
+        let slope = direction.truncate() / direction.z;
+        let local = LocalRay {
+            origin: (local.truncate() - slope * local.z).as_vec2(),
+            direction: slope.as_vec2(),
+            depth: local.z as f32,
+        };
+        Some(self.camera_ray(pose, &local, self.film_of(&local)))
     }
 
     /// Whether camera rays pass this depth.
     #[inline]
     fn sees_depth(&self, z: f64) -> bool {
         z > f64::from(self.near_clip)
-    }
-
-    #[inline]
-    fn with_pose<R>(&self, time: f32, f: impl FnOnce(&Pose) -> R) -> R {
-        match &self.fixed {
-            Some(pose) => f(pose),
-            None => f(&Pose::new(&self.world_from_camera.at(time))),
-        }
     }
 
     /// The direction, but for its depth of 1, of the rays of an orthographic camera through a point of the lens.

@@ -2,15 +2,23 @@
 
 mod aperture;
 mod importance;
+mod planar;
 mod pose;
+mod realistic;
+mod spherical;
 
-pub use importance::{CameraConnection, CameraDensity, CameraRay, RasterDomain};
+use std::sync::Arc;
 
-use self::aperture::Aperture;
+pub use self::importance::{CameraConnection, CameraDensity, CameraRay, RasterDomain};
+pub use self::realistic::{Realistic, RealisticSpec};
+
+use self::planar::Planar;
 use self::pose::{CameraFrame, Pose};
+use self::spherical::Spherical;
 use crate::desc::{ApertureDesc, MeasureDesc};
 use crate::geometry::{Ray, RayCone};
-use crate::math::{AnimatedTransform, Vec2, Vec3};
+use crate::math::{AnimatedTransform, DAffine3, Vec2, Vec3};
+use crate::sampling::SphereMap;
 
 /// How a camera maps the film onto the scene. In camera space it looks along +z, x is to the right of the picture, y is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +34,7 @@ pub enum Projection {
     Orthographic,
 }
 
-/// What a camera is made of.
+/// What a camera with a flat screen is made of.
 #[derive(Clone, Debug)]
 pub struct CameraSpec {
     /// Its projection.
@@ -52,20 +60,19 @@ pub struct CameraSpec {
 /// A camera of a picture.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    perspective: bool,
-    /// Screen plane position of the raster origin, and its change by one pixel right and one down.
-    screen_origin: Vec2,
-    screen_per_pixel: Vec2,
-    near_clip: f32,
-    lens_radius: f32,
-    focal_distance: f32,
-    aperture: Aperture,
-    /// The pixel's area on the screen plane, if a pixel is an irradiance.
-    irradiance_area: Option<f32>,
+    eye: Eye,
     shutter: [f32; 2],
     world_from_camera: AnimatedTransform,
     /// The transforms, where nothing moves.
     fixed: Option<Pose>,
+}
+
+/// How film positions become rays, in camera space.
+#[derive(Clone, Debug)]
+enum Eye {
+    Planar(Planar),
+    Spherical(Spherical),
+    Realistic(Arc<Realistic>),
 }
 
 /// The numbers that choose a camera ray.
@@ -80,46 +87,74 @@ pub struct CameraSample {
 }
 
 impl Camera {
-    /// Builds a camera.
+    /// Builds a camera with a flat screen.
     pub fn new(spec: &CameraSpec) -> Self {
-        let [x_min, x_max, y_min, y_max] = spec.screen_window;
-        let [width, height] = spec.resolution.map(f64::from);
-        let (perspective, scale, near_clip) = match spec.projection {
-            Projection::Perspective { fov, near_clip } => (true, (0.5 * fov.to_radians()).tan(), near_clip),
-            Projection::Orthographic => (false, 1.0, 0.0),
-        };
-        let per_pixel = [scale * (x_max - x_min) / width, -scale * (y_max - y_min) / height];
-        let is_static = spec.world_from_camera.is_static();
+        Self::of_eye(Eye::Planar(Planar::new(spec)), spec.shutter, &spec.world_from_camera)
+    }
+
+    /// A camera at a point that sees all around, onto `resolution` pixels. The pole of the map is up (+y), its second axis is forward (+z).
+    pub fn spherical(
+        map: SphereMap,
+        resolution: [u32; 2],
+        shutter: [f64; 2],
+        world_from_camera: &AnimatedTransform,
+    ) -> Self {
+        Self::of_eye(
+            Eye::Spherical(Spherical::new(map, resolution)),
+            shutter,
+            world_from_camera,
+        )
+    }
+
+    /// A camera that looks through lenses.
+    pub fn realistic(lens: Realistic, shutter: [f64; 2], world_from_camera: &AnimatedTransform) -> Self {
+        Self::of_eye(Eye::Realistic(Arc::new(lens)), shutter, world_from_camera)
+    }
+
+    fn of_eye(eye: Eye, shutter: [f64; 2], world_from_camera: &AnimatedTransform) -> Self {
+        let is_static = world_from_camera.is_static();
         Self {
-            perspective,
-            screen_origin: Vec2::new((scale * x_min) as f32, (scale * y_max) as f32),
-            screen_per_pixel: Vec2::new(per_pixel[0] as f32, per_pixel[1] as f32),
-            near_clip: near_clip as f32,
-            lens_radius: spec.lens_radius as f32,
-            focal_distance: spec.focal_distance as f32,
-            aperture: Aperture::new(spec.aperture),
-            irradiance_area: match spec.measure {
-                MeasureDesc::Radiance => None,
-                MeasureDesc::Irradiance => Some((per_pixel[0] * per_pixel[1]).abs() as f32),
-            },
-            shutter: spec.shutter.map(|t| t as f32),
-            fixed: is_static.then(|| Pose::new(&spec.world_from_camera.at(0.0))),
-            world_from_camera: spec.world_from_camera.clone(),
+            eye,
+            shutter: shutter.map(|t| t as f32),
+            fixed: is_static.then(|| Pose::new(&world_from_camera.at(0.0))),
+            world_from_camera: world_from_camera.clone(),
         }
     }
 
-    /// The ray of a sample, with a direction of unit length.
+    /// The ray of a sample, with a direction of unit length, and its [importance](Camera::importance). `None` if nothing comes through
+    /// the lenses.
     #[inline]
-    pub fn sample_ray(&self, sample: &CameraSample) -> Ray {
-        let time = self.scene_time(sample.time);
-        let (origin, direction) = self.local_ray(sample);
-        // On to the near plane (`direction` has the depth 1).
-        let origin = origin + direction * self.near_clip;
+    pub fn generate_ray(&self, sample: &CameraSample) -> Option<(Ray, f32)> {
+        self.ray_at(sample, self.scene_time(sample.time))
+    }
+
+    /// [`Camera::generate_ray`], at a scene time whatever the time of the sample.
+    #[inline]
+    pub fn ray_at(&self, sample: &CameraSample, time: f32) -> Option<(Ray, f32)> {
+        let (origin, direction, importance) = match &self.eye {
+            Eye::Planar(planar) => {
+                let (origin, direction) = planar.local_start(sample);
+                (origin, direction, planar.importance(sample))
+            }
+            Eye::Spherical(spherical) => (Vec3::ZERO, spherical.direction(sample.film), 1.0),
+            Eye::Realistic(lens) => lens.ray(sample)?,
+        };
         let frame = match &self.fixed {
             Some(pose) => pose.frame,
             None => CameraFrame::new(&self.world_from_camera.at(time)),
         };
-        Ray::new(frame.point(origin), frame.vector(direction).normalize(), time)
+        let ray = Ray::new(frame.point(origin), frame.vector(direction).normalize(), time);
+        Some((ray, importance))
+    }
+
+    /// The ray of a sample of a camera that has one for each.
+    ///
+    /// # Panics
+    /// If there is none: see [`Camera::generate_ray`].
+    #[inline]
+    pub fn sample_ray(&self, sample: &CameraSample) -> Ray {
+        let (ray, _) = self.generate_ray(sample).expect("a camera without vignetting");
+        ray
     }
 
     /// What the radiance along the ray of a sample counts for a pixel, besides the filter's weight: 1 if the pixel is a mean of
@@ -134,75 +169,84 @@ impl Camera {
     ///   cos θ, which is 1 without a lens.
     ///
     /// θ is the angle between the ray and the camera's axis. A filter that is wider than the pixel is scaled to the same integral.
+    ///
+    /// Behind lenses a pixel is the irradiance of the film, over that of a lens of the same distance and an area of its square, as in pbrt-v4.
     #[inline]
     pub fn importance(&self, sample: &CameraSample) -> f32 {
-        if self.irradiance_area.is_none() {
-            return 1.0;
+        match &self.eye {
+            Eye::Planar(planar) => planar.importance(sample),
+            Eye::Spherical(_) => 1.0,
+            Eye::Realistic(lens) => lens.ray(sample).map_or(0.0, |(_, _, weight)| weight),
         }
-        self.importance_along(self.local_ray(sample).1)
-    }
-
-    /// The same for a direction of camera space whose depth is 1.
-    #[inline]
-    fn importance_along(&self, direction: Vec3) -> f32 {
-        let Some(area) = self.irradiance_area else {
-            return 1.0;
-        };
-        let cos_squared = 1.0 / direction.length_squared();
-        if self.perspective {
-            area * cos_squared * cos_squared
-        } else {
-            area * cos_squared.sqrt()
-        }
-    }
-
-    /// Origin, on the lens, and direction, with z = 1, in camera space.
-    #[inline]
-    fn local_ray(&self, sample: &CameraSample) -> (Vec3, Vec3) {
-        let screen = self.screen_origin + sample.film * self.screen_per_pixel;
-        let (mut origin, mut direction) = if self.perspective {
-            (Vec3::ZERO, screen.extend(1.0))
-        } else {
-            (screen.extend(0.0), Vec3::Z)
-        };
-        if self.lens_radius > 0.0 {
-            let focus = origin + direction * self.focal_distance;
-            origin += self.lens_point(sample.lens).extend(0.0);
-            direction = (focus - origin) / self.focal_distance;
-        }
-        (origin, direction)
-    }
-
-    /// The point of the lens that the numbers `u` choose.
-    #[inline]
-    fn lens_point(&self, u: Vec2) -> Vec2 {
-        self.aperture.sample(u) * self.lens_radius
-    }
-
-    /// The area of a pixel on the screen plane.
-    #[inline]
-    fn pixel_area(&self) -> f32 {
-        (self.screen_per_pixel.x * self.screen_per_pixel.y).abs()
     }
 
     /// How wide the ray through the point `film` (see [`CameraSample::film`]) is, if it stands for a square of `scale` pixels a
     /// side. The lens does not matter: what is out of focus is filtered by its rays.
     #[inline]
     pub fn ray_cone(&self, film: Vec2, scale: f32) -> RayCone {
-        let pixel = scale * self.pixel_area().sqrt();
-        if !self.perspective {
-            return RayCone {
-                width: pixel,
-                spread: 0.0,
-            };
+        match &self.eye {
+            Eye::Planar(planar) => planar.ray_cone(film, scale),
+            Eye::Spherical(spherical) => spherical.ray_cone(film, scale),
+            Eye::Realistic(lens) => lens.ray_cone(scale),
         }
-        // A pixel's solid angle is its area on the plane at distance 1 times the cube of the cosine.
-        let screen = self.screen_origin + film * self.screen_per_pixel;
-        let cos = 1.0 / (1.0 + screen.length_squared()).sqrt();
-        let spread = pixel * cos * cos.sqrt();
-        RayCone {
-            width: spread * self.near_clip / cos,
-            spread,
+    }
+
+    /// Whether light paths can be connected to it.
+    pub fn takes_light_paths(&self) -> bool {
+        !matches!(self.eye, Eye::Realistic(_))
+    }
+
+    /// Whether it stays where it is.
+    pub fn is_static(&self) -> bool {
+        self.world_from_camera.is_static()
+    }
+
+    /// Where the world is in the camera's space, at a scene time.
+    pub fn camera_from_world(&self, time: f32) -> DAffine3 {
+        self.with_pose(time, |pose| pose.camera_from_world)
+    }
+
+    /// The scene time at which the shutter has been open for the share `u` of its time (see [`CameraSample::time`]).
+    #[inline]
+    pub fn scene_time(&self, u: f32) -> f32 {
+        (self.shutter[0] + u * (self.shutter[1] - self.shutter[0])).clamp(0.0, 1.0)
+    }
+
+    /// Connects the point `p` to the camera at scene time `time`; `u_lens` are the numbers of a [`CameraSample`]: they choose
+    /// the point of the lens (perspective), the direction (orthographic), or one of several film positions of the same direction
+    /// (spherical, near the edges); a pinhole uses none.
+    ///
+    /// `None` if `p` is behind the camera or before its near plane, if no pixel of `domain` sees it, or if the camera
+    /// [takes no light paths](Camera::takes_light_paths).
+    #[inline]
+    pub fn sample_wi(&self, p: Vec3, time: f32, u_lens: Vec2, domain: &RasterDomain) -> Option<CameraConnection> {
+        self.with_pose(time, |pose| match &self.eye {
+            Eye::Planar(planar) => planar.sample_wi(pose, p, u_lens, domain),
+            Eye::Spherical(spherical) => spherical.sample_wi(pose, p, u_lens, domain),
+            Eye::Realistic(_) => None,
+        })
+    }
+
+    /// What the camera has to do with the ray in the direction `w` (unit length) that meets the point `p`, in front of it, at scene
+    /// time `time`. It must be one of its rays: that it crosses the lens, or has the one direction that there is, is not checked,
+    /// nor that a pixel sees it.
+    ///
+    /// `None` if `p` is behind the camera or before its near plane, if `w` goes back to it, or if the camera
+    /// [takes no light paths](Camera::takes_light_paths).
+    #[inline]
+    pub fn pdf_we(&self, p: Vec3, w: Vec3, time: f32) -> Option<CameraRay> {
+        self.with_pose(time, |pose| match &self.eye {
+            Eye::Planar(planar) => planar.pdf_we(pose, p, w),
+            Eye::Spherical(spherical) => spherical.pdf_we(pose, p),
+            Eye::Realistic(_) => None,
+        })
+    }
+
+    #[inline]
+    fn with_pose<R>(&self, time: f32, f: impl FnOnce(&Pose) -> R) -> R {
+        match &self.fixed {
+            Some(pose) => f(pose),
+            None => f(&Pose::new(&self.world_from_camera.at(time))),
         }
     }
 }

@@ -21,6 +21,8 @@ struct SceneInfo {
     meshes: usize,
     triangles: u64,
     spheres: u64,
+    quadrics: u64,
+    patches: u64,
     instances: usize,
     instanced_primitives: u64,
     bounds_min: [f32; 3],
@@ -82,7 +84,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 impl SceneInfo {
     fn new(name: &str, desc: &SceneDesc, scene: &Scene) -> Self {
         let world = scene.world();
-        let (mut meshes, mut triangles, mut spheres) = (0, 0, 0);
+        let (mut meshes, mut triangles, mut spheres, mut quadrics, mut patches) = (0, 0, 0, 0, 0);
         for geometry in world.geometries() {
             match &geometry.shape {
                 Shape::Mesh(mesh) => {
@@ -90,6 +92,8 @@ impl SceneInfo {
                     triangles += mesh.triangle_count() as u64;
                 }
                 Shape::Spheres(list) => spheres += list.len() as u64,
+                Shape::Quadrics(list) => quadrics += list.len() as u64,
+                Shape::Patches(mesh) => patches += mesh.patch_count() as u64,
             }
         }
         let bounds = scene.bounds();
@@ -105,6 +109,8 @@ impl SceneInfo {
             meshes,
             triangles,
             spheres,
+            quadrics,
+            patches,
             instances: world.instances().len(),
             instanced_primitives: world.instanced_primitive_count(),
             bounds_min: bounds.min.to_array(),
@@ -148,6 +154,8 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Sided(_) => "sided",
         Material::Tinted(tinted) => material_kind(&tinted.material),
         Material::Plastic(_) => "plastic",
+        Material::Hair(_) => "hair",
+        Material::Interface => "interface",
     }
 }
 
@@ -185,8 +193,8 @@ impl std::fmt::Display for SceneInfo {
         }
         writeln!(
             f,
-            "  shapes      {} meshes of {} triangles, {} spheres",
-            self.meshes, self.triangles, self.spheres
+            "  shapes      {} meshes of {} triangles, {} spheres, {} other quadrics, {} patches",
+            self.meshes, self.triangles, self.spheres, self.quadrics, self.patches
         )?;
         writeln!(
             f,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::args::{ListArgs, ListKind};
 use super::report::print_json;
-use crate::desc::{Entry, INTEGRATORS, LIGHTS, MATERIALS, Parameter, SAMPLERS, TEXTURES};
+use crate::desc::{Entry, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, SAMPLERS, TEXTURES};
 use crate::error::{Error, Result};
 
 /// An [`Entry`], ready to print.
@@ -59,6 +59,7 @@ pub fn run(args: &ListArgs) -> Result<()> {
 fn table(what: ListKind) -> &'static [Entry] {
     match what {
         ListKind::Materials => &MATERIALS,
+        ListKind::Media => &MEDIA,
         ListKind::Lights => &LIGHTS,
         ListKind::Textures => &TEXTURES,
         ListKind::Samplers => &SAMPLERS,

@@ -2,6 +2,7 @@
 
 pub mod args;
 mod compare;
+mod convert;
 mod info;
 mod list;
 mod memory;
@@ -33,6 +34,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, print_error: &dyn Fn(&Error
         Command::Render(args) => return ExitCode::from(render::run(&args, print_error)),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::List(args) => list::run(&args),
     };
     match result {

@@ -46,13 +46,14 @@ pub(in crate::desc) fn read(
         .map(|(path, encoding, _)| read_one(path, *encoding))
         .collect();
     let mut images = Vec::with_capacity(read.len());
-    for ((path, _, span), outcome) in files.iter().zip(read) {
+    for ((path, encoding, span), outcome) in files.iter().zip(read) {
         match outcome {
             Ok((image, hash)) => {
                 count(&hash);
                 check_color_space(report, *span, path, &image);
                 images.push(ImageDesc {
                     path: path.clone(),
+                    encoding: *encoding,
                     image: Arc::new(image),
                 });
             }

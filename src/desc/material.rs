@@ -86,6 +86,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: CoatDesc,
     },
+    /// No surface at all, only a boundary between media.
+    Interface,
     /// Of two materials, one here and one there.
     Mix {
         /// The two. A mix does not contain itself.
@@ -115,6 +117,39 @@ pub enum MaterialKind {
     Principled(PrincipledDesc),
     /// A surface by measurements.
     Measured(Arc<MeasuredDesc>),
+    /// Hair: a fibre along dp/du, across which the second texture coordinate runs from 0 to 1.
+    Hair(HairDesc),
+}
+
+/// The parameters of pbrt-v4's `hair`.
+#[derive(Clone, Debug)]
+pub struct HairDesc {
+    /// What it absorbs.
+    pub color: HairColorDesc,
+    /// Index of refraction; positive.
+    pub eta: f32,
+    /// Roughness along the fibre, in [0, 1].
+    pub beta_m: Textured<f32>,
+    /// Roughness around the fibre, in [0, 1].
+    pub beta_n: Textured<f32>,
+    /// Slant of the fibre's scales, in degrees.
+    pub alpha: Textured<f32>,
+}
+
+/// What hair absorbs.
+#[derive(Clone, Debug)]
+pub enum HairColorDesc {
+    /// So much over the radius of a fibre; not negative.
+    Absorption(Textured<SpectrumDesc>),
+    /// As much as makes many fibres look like this.
+    Reflectance(Textured<SpectrumDesc>),
+    /// By what it has of its pigments; not negative.
+    Pigments {
+        /// The brown one.
+        eumelanin: Textured<f32>,
+        /// The red one.
+        pheomelanin: Textured<f32>,
+    },
 }
 
 /// A coat and what lies between it and the surface under it.

@@ -23,6 +23,8 @@ mod integrator;
 mod kinds;
 mod light;
 mod material;
+mod measured_media;
+mod medium;
 pub mod mitsuba;
 pub mod obj;
 pub mod pbrt;
@@ -48,27 +50,29 @@ pub use integrator::{
     PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
 };
 pub use kinds::{
-    Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, Parameter, ParameterDefault, ParameterKind, SAMPLERS, TEXTURES,
+    Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS,
+    TEXTURES,
 };
 pub use light::{AreaLightDesc, LightDesc, LightKind, SpotFalloff};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, MaterialDesc, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc,
-    RoughnessDesc, SpectrumDesc, SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
+    PrincipledDesc, ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
+pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
-pub use shape::{MeshDesc, ShapeDesc, ShapeKind};
+pub use shape::{DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
 pub use view::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect,
-    SamplerDesc, SensorDesc, ViewDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
+    LensSurface, MeasureDesc, PixelRect, RealisticDesc, SamplerDesc, SensorDesc, SpectralBins, StopShape, ViewDesc,
 };
 
 /// A whole scene, as its file describes it.
 ///
-/// Every index in it ([`MaterialId`], [`TextureId`], [`ObjectId`], the vertex indices of meshes) is in range, every number finite, every transform
+/// Every index in it ([`MaterialId`], [`MediumId`], [`TextureId`], [`ObjectId`], the vertex indices of meshes) is in range, every number finite, every transform
 /// invertible.
 #[derive(Clone, Debug)]
 pub struct SceneDesc {
@@ -80,6 +84,8 @@ pub struct SceneDesc {
     pub integrator: IntegratorDesc,
     /// What [`MaterialId`] counts. The first is pbrt's default, a diffuse reflectance of 0.5.
     pub materials: Vec<MaterialDesc>,
+    /// What [`MediumId`] counts.
+    pub media: Vec<MediumDesc>,
     /// What [`TextureId`] counts.
     pub textures: Vec<TextureDesc>,
     /// What [`ImageId`] counts: every file once for each encoding.
@@ -104,6 +110,10 @@ pub struct SceneDesc {
 /// Index into [`SceneDesc::materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialId(pub u32);
+
+/// Index into [`SceneDesc::media`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MediumId(pub u32);
 
 /// Index into [`SceneDesc::objects`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

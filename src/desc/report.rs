@@ -21,6 +21,10 @@ pub(in crate::desc) struct Report {
     lenient: bool,
     /// Errors that would be warnings with `--lenient`.
     forgivable: usize,
+    /// Whether the scene is of pbrt-v3.
+    old: bool,
+    /// What was translated from pbrt-v3: where first, how, and how often.
+    translated: Vec<(Span, &'static str, usize)>,
 }
 
 impl Report {
@@ -88,6 +92,27 @@ impl Report {
         }
     }
 
+    /// The scene is of pbrt-v3, as the text at `span` shows.
+    pub fn set_old(&mut self, span: Span) {
+        if !std::mem::replace(&mut self.old, true) {
+            let message = "this scene is of pbrt-v3: it is translated to pbrt-v4, which may look different in places";
+            self.warning(span, message);
+        }
+    }
+
+    /// Whether the scene is of pbrt-v3.
+    pub fn is_old(&self) -> bool {
+        self.old
+    }
+
+    /// Something of pbrt-v3 was translated as `message` says: a warning where it is met first.
+    pub fn translated(&mut self, span: Span, message: &'static str) {
+        match self.translated.iter_mut().find(|(_, known, _)| *known == message) {
+            Some((_, _, count)) => *count += 1,
+            None => self.translated.push((span, message, 1)),
+        }
+    }
+
     /// Something is not known or not supported and would change the image: an error, or with `--lenient` a warning, which `instead`
     /// completes by saying what is done instead.
     pub fn unsupported(&mut self, span: Span, message: impl Into<String>, instead: &str) {
@@ -147,6 +172,10 @@ impl Report {
 
     /// The sources and the warnings, file by file, in order.
     pub fn into_sources_and_warnings(mut self) -> (SourceMap, Vec<Diagnostic>) {
+        for (span, message, count) in std::mem::take(&mut self.translated) {
+            let help = (count > 1).then(|| format!("the same {} times more", count - 1));
+            self.warning_with_help(span, message, help);
+        }
         if self.warnings_left_out > 0
             && let Some((_, last)) = self.warnings.last_mut()
         {

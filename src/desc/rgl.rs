@@ -2,6 +2,7 @@
 //! Material Acquisition and Rendering").
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 /// A grid of numbers, the last index running fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Tensor {
 /// A measured material. Shapes agree with one another; every number is finite and not negative but for angles.
 #[derive(Clone, Debug)]
 pub struct MeasuredDesc {
+    /// The file that it was read from.
+    pub path: PathBuf,
     /// Azimuths of the incident direction, increasing; one or two for an isotropic material.
     pub phi: Vec<f32>,
     /// Its polar angles, increasing, at least two.
@@ -52,6 +55,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeasuredDesc, String> {
         Ok(tensor)
     };
     let desc = MeasuredDesc {
+        path: PathBuf::new(),
         phi: take("phi_i", 1)?.values,
         theta: take("theta_i", 1)?.values,
         wavelengths: take("wavelengths", 1)?.values,

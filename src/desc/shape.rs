@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::{AreaLightDesc, MaterialId, MotionDesc, Textured};
+use super::{AreaLightDesc, MaterialId, MediumInterfaceDesc, MotionDesc, Textured};
 use crate::error::Span;
 
 /// One shape.
@@ -21,6 +21,8 @@ pub struct ShapeDesc {
     pub reverse_orientation: bool,
     /// What it is made of.
     pub material: MaterialId,
+    /// What is on its two sides, if that differs; else whatever a ray comes through goes on.
+    pub media: Option<MediumInterfaceDesc>,
     /// How much of it there is: rays pass it with the probability 1 - alpha. In [0, 1] unless from a texture; default 1.
     pub alpha: Textured<f32>,
     /// What it emits.
@@ -37,6 +39,80 @@ pub enum ShapeKind {
         /// Positive.
         radius: f64,
     },
+    /// A part of a sphere, a cylinder or a disk, from the x axis of object space counterclockwise around the z axis.
+    Quadric {
+        /// Which.
+        surface: QuadricDesc,
+        /// How far it goes around, in degrees: in (0, 360].
+        phi_max: f64,
+    },
+    /// Bilinear patches; there is at least one.
+    BilinearMesh(Arc<PatchMeshDesc>),
+    /// The limit surface of Loop's subdivision.
+    LoopSubdivision {
+        /// Positions and triangles, at least one.
+        cage: Arc<MeshDesc>,
+        /// How many times each triangle becomes four.
+        levels: u32,
+    },
+    /// Triangles that a texture moves along their normals.
+    DisplacedMesh {
+        /// Before that; there is at least one triangle.
+        mesh: Arc<MeshDesc>,
+        /// How.
+        displacement: DisplacementDesc,
+    },
+}
+
+/// Surfaces of revolution around the z axis, object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QuadricDesc {
+    /// The part of a sphere around the origin between two heights.
+    Sphere {
+        /// Positive.
+        radius: f64,
+        /// Ascending, within the sphere.
+        z: [f64; 2],
+    },
+    /// A cylinder without lids.
+    Cylinder {
+        /// Positive.
+        radius: f64,
+        /// Ascending.
+        z: [f64; 2],
+    },
+    /// A disk, or a ring.
+    Disk {
+        /// Where it crosses the z axis.
+        height: f64,
+        /// Positive.
+        radius: f64,
+        /// Of its hole: not negative, less than `radius`.
+        inner_radius: f64,
+    },
+}
+
+/// How a mesh is displaced: its triangles are halved until their edges are short enough, then each vertex is moved along its
+/// normal, in object space, by the value of a texture there.
+#[derive(Clone, Debug)]
+pub struct DisplacementDesc {
+    /// In units of object space.
+    pub texture: Textured<f32>,
+    /// Longest edge, in the space of `world_from_object`; positive.
+    pub edge_length: f64,
+}
+
+/// A mesh of bilinear patches, in object space.
+#[derive(Clone, Debug, Default)]
+pub struct PatchMeshDesc {
+    /// Vertices, all finite.
+    pub positions: Vec<Vec3>,
+    /// Shading normals (`N`), not normalised; as many as `positions`, or none.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates; as many as `positions`, or none.
+    pub uvs: Vec<Vec2>,
+    /// The corners (u, v) = (0, 0), (1, 0), (0, 1), (1, 1) of each patch, all below `positions.len()`.
+    pub indices: Vec<[u32; 4]>,
 }
 
 /// A mesh of triangles, in object space.

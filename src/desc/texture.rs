@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3, Mat2, Vec2, Vec3};
 
 use super::SpectrumDesc;
 use crate::error::Span;
-use crate::image_io::Image;
+use crate::image_io::{Encoding, Image};
 use crate::spectrum::ColorSpace;
 
 /// Index into [`SceneDesc::textures`](super::SceneDesc::textures).
@@ -191,6 +191,8 @@ pub struct ImageId(pub u32);
 pub struct ImageDesc {
     /// Where it is.
     pub path: PathBuf,
+    /// The curve of its integer samples.
+    pub encoding: Encoding,
     /// Its linear values, in the space that [`color_space_of`] says; it has the channels R, G and B, or Y.
     pub image: Arc<Image>,
 }

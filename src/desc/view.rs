@@ -1,10 +1,12 @@
 //! Views: a camera with its film, filter and sampler.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::MotionDesc;
+use super::{MediumId, MotionDesc};
 use crate::error::Span;
-use crate::sampling::SamplerKind;
+use crate::image_io::Image;
+use crate::sampling::{SamplerKind, SphereMap};
 use crate::spectrum::ColorSpace;
 
 /// One picture to be taken of the scene.
@@ -43,8 +45,10 @@ pub struct CameraDesc {
     pub aperture: ApertureDesc,
     /// When the shutter opens and closes, in the time of [`super::SceneDesc::transform_times`]; open < close.
     pub shutter: [f64; 2],
-    /// The inverse of pbrt's current transform at the `Camera` directive.
-    pub world_from_camera: MotionDesc,
+    /// What it stands in; `None` is the vacuum.
+    pub medium: Option<MediumId>,
+    /// pbrt's current transform at the `Camera` directive.
+    pub camera_from_world: MotionDesc,
 }
 
 /// The shape of the opening of a thin lens.
@@ -63,7 +67,7 @@ pub enum ApertureDesc {
 }
 
 /// The projection of a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum CameraKind {
     /// Through a point.
     Perspective {
@@ -76,9 +80,60 @@ pub enum CameraKind {
     },
     /// Parallel: the screen window is in scene units.
     Orthographic,
+    /// All around from a point: by this map, whose pole is up and whose second axis is forward.
+    Spherical(SphereMap),
+    /// Through lenses; scene units are metres.
+    Realistic(Arc<RealisticDesc>),
+}
+
+/// The lenses of a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RealisticDesc {
+    /// From the scene to the film, at least one; one at most is the aperture stop, whose diameter is what is asked for.
+    pub surfaces: Vec<LensSurface>,
+    /// How far away what is sharp is from the film, in scene units; positive.
+    pub focus_distance: f64,
+    /// The shape of the stop's opening.
+    pub shape: StopShape,
+}
+
+/// A surface of a lens; lengths are in millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensSurface {
+    /// Of curvature, positive if it bulges towards the scene; 0 for the aperture stop.
+    pub radius: f64,
+    /// Along the axis to the next surface; of the last one, before focusing, to the film.
+    pub thickness: f64,
+    /// The index of refraction from here to the next surface; 0 or 1 for air.
+    pub eta: f64,
+    /// Of the opening; positive.
+    pub diameter: f64,
+}
+
+/// The shape of an aperture stop's opening; all let the same light through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum StopShape {
+    /// A disk.
+    #[default]
+    Round,
+    /// A disk that fades out towards its rim.
+    Gaussian,
+    /// Of half the diameter.
+    Square,
+    /// Regular.
+    Pentagon,
+    /// With five points.
+    Star,
+    /// How much passes, by place; finite, not negative, not black.
+    Image(Arc<Image>),
 }
 
 impl CameraDesc {
+    /// Where it stands and looks.
+    pub fn world_from_camera(&self) -> MotionDesc {
+        self.camera_from_world.inverse()
+    }
+
     /// `[x_min, x_max, y_min, y_max]` of the picture on the screen plane: what the file says, else -1 to 1 along the shorter side
     /// and the aspect ratio along the other.
     pub fn screen_window(&self, resolution: [u32; 2]) -> [f64; 4] {
@@ -97,12 +152,14 @@ impl CameraDesc {
 }
 
 /// What the picture is taken on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FilmDesc {
     /// Width and height in pixels, neither 0. Default 1280 by 720.
     pub resolution: [u32; 2],
     /// The part of it that is rendered.
     pub crop: CropDesc,
+    /// From corner to corner of the film, in millimetres, behind the lenses of a realistic camera; positive. Default 35.
+    pub diagonal: f64,
     /// The output file, as typed, if the scene names one.
     pub filename: Option<PathBuf>,
     /// Sensitivity; default 100; positive.
@@ -119,14 +176,73 @@ pub struct FilmDesc {
     pub color_space: ColorSpace,
     /// What of radiance a pixel is.
     pub measure: MeasureDesc,
+    /// What is kept of a pixel beside its colour.
+    pub kind: FilmKind,
     /// The `Film` directive; the whole file's first byte if there is none.
     pub span: Span,
 }
 
 impl FilmDesc {
+    /// Whether another film is the same, wherever it is described and however long the shutter of its camera is open.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let placed = Self {
+            span: self.span,
+            exposure_time: self.exposure_time,
+            ..other.clone()
+        };
+        *self == placed
+    }
+
     /// What the sensor multiplies radiance by: `exposure_time * iso / 100`, as in pbrt-v4. It is 1 by default.
     pub fn imaging_ratio(&self) -> f64 {
         self.exposure_time * self.iso / 100.0
+    }
+}
+
+/// What a film keeps of a pixel beside its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FilmKind {
+    /// Nothing.
+    #[default]
+    Rgb,
+    /// The surfaces that it sees first: positions and normals in this space, and more. See [`crate::film::GBUFFER_CHANNELS`].
+    GBuffer(GBufferSpace),
+    /// Radiance by wavelength.
+    Spectral(SpectralBins),
+}
+
+/// The space of positions and normals in a G-buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GBufferSpace {
+    /// That of the camera, which looks along +z.
+    #[default]
+    Camera,
+    /// That of the scene.
+    World,
+}
+
+/// Parts of equal width of a range of wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralBins {
+    /// The shortest and the longest wavelength, in nm, within 360 to 830.
+    pub range: [f32; 2],
+    /// How many parts it has, at least 1.
+    pub count: u32,
+}
+
+impl SpectralBins {
+    /// The part that a wavelength, in nm, is in: the upper one at an edge. `None` outside of the range; its end belongs to the last.
+    #[inline]
+    pub fn index(&self, nm: f32) -> Option<usize> {
+        let [start, end] = self.range;
+        let part = (nm - start) / (end - start) * self.count as f32;
+        (nm >= start && nm <= end).then(|| (part as usize).min(self.count as usize - 1))
+    }
+
+    /// The wavelength in the middle of a part, in nm.
+    pub fn center(&self, index: u32) -> f64 {
+        let [start, end] = self.range.map(f64::from);
+        start + (f64::from(index) + 0.5) / f64::from(self.count) * (end - start)
     }
 }
 

@@ -1,12 +1,17 @@
 //! What light does to a picture: pixel filters, the sensor's response, and exact sums.
 
+mod bins;
 mod filter;
+mod gbuffer;
+mod layers;
 mod sensor;
 mod splats;
 mod sums;
 
 pub use crate::desc::{FilterKind, PixelRect};
 pub use filter::{FilterSample, PixelFilter};
+pub use gbuffer::{GBUFFER_CHANNELS, SurfaceSample};
+pub use layers::LayerSample;
 pub use sensor::{Sensor, SensorSpec};
 pub use splats::Splat;
 pub(crate) use sums::lock;

@@ -36,6 +36,7 @@ pub struct Sensor {
     rgb_from_sensor: Mat3,
     imaging_ratio: f32,
     max_component: f32,
+    color_space: ColorSpace,
 }
 
 #[derive(Clone, Debug)]
@@ -76,6 +77,7 @@ impl Sensor {
             rgb_from_sensor: (target.rgb_from_xyz() * xyz_from_sensor * ratio).as_mat3(),
             imaging_ratio: ratio as f32,
             max_component: spec.max_component as f32,
+            color_space: target,
         };
         if mode == ColorMode::Rgb && sensor.max_component == f32::INFINITY {
             // Nobody asks for XYZ on the way, and sRGB of sRGB is exactly the same.
@@ -100,6 +102,34 @@ impl Sensor {
     #[inline]
     pub fn splat_to_rgb(&self, l: SampledSpectrum, lambda: &Wavelengths, pixels: f32) -> [f32; 3] {
         self.to_rgb_within(l, lambda, self.max_component * pixels)
+    }
+
+    /// Linear RGB, in the picture's colour space, of a reflectance at the wavelengths of a path under the white of that space.
+    pub fn albedo_to_rgb(&self, albedo: SampledSpectrum, lambda: &Wavelengths) -> [f32; 3] {
+        let space = self.color_space;
+        let rgb = if let Response::Lanes(_) = self.response {
+            let [r, g, b, _] = albedo.0.map(f64::from);
+            if space == ColorSpace::Srgb {
+                return [r, g, b].map(|c| c as f32);
+            }
+            space.rgb_from_xyz() * ColorSpace::Srgb.xyz_from_rgb() * DVec3::new(r, g, b)
+        } else {
+            let white = SampledSpectrum(lambda.lambda.map(|nm| space.white_at(nm)));
+            let light = (albedo * white).safe_div(lambda.pdf());
+            let xyz = cie::xyz_bar(lambda).map(|bar| f64::from((bar * light).mean() / cie::y_integral()));
+            space.rgb_from_xyz() * DVec3::from(xyz)
+        };
+        rgb.as_vec3().into()
+    }
+
+    /// Radiance within the limit of the sensor's values.
+    pub fn limit(&self, l: SampledSpectrum) -> SampledSpectrum {
+        let largest = l.max_value();
+        if largest > self.max_component {
+            l * (self.max_component / largest)
+        } else {
+            l
+        }
     }
 
     #[inline]

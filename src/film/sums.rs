@@ -4,7 +4,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::desc::PixelRect;
+use super::layers::TileLayers;
+use crate::desc::{FilmKind, PixelRect};
 
 /// Edge of a tile in pixels: the paths of one at one sample index fit a second level cache. Tiles lie at multiples of it from the top left corner of the whole picture, whatever the crop.
 pub const TILE_SIZE: u32 = 32;
@@ -25,6 +26,7 @@ pub struct TileSums {
     pub(super) splats: Vec<[i128; 3]>,
     /// Squares of the luminance of camera samples, if the film keeps them, in units of 2^-48; else empty.
     squares: Vec<i128>,
+    pub(super) layers: TileLayers,
     dropped: u64,
 }
 
@@ -51,7 +53,7 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
 }
 
 /// Back to a number.
-fn dequantize(sum: i128) -> f64 {
+pub(super) fn dequantize(sum: i128) -> f64 {
     sum as f64 / 18_446_744_073_709_551_616.0
 }
 
@@ -100,6 +102,16 @@ impl TileSums {
         }
     }
 
+    /// The filter weight of all samples of a pixel.
+    pub(super) fn weight(&self, index: usize) -> f64 {
+        dequantize(self.pixels[index].weight)
+    }
+
+    /// How many pixels it holds.
+    pub(super) fn pixel_count(&self) -> usize {
+        self.pixels.len()
+    }
+
     /// The colour of a pixel, where there were `light_paths`.
     fn develop(&self, x: u32, y: u32, light_paths: f64) -> [f32; 3] {
         let index = self.index(x, y);
@@ -127,6 +139,8 @@ pub struct Film {
     takes_splats: bool,
     light_paths: AtomicU64,
     layers: Vec<Film>,
+    /// What it keeps beside colours.
+    pub(super) kind: FilmKind,
 }
 
 impl Film {
@@ -153,6 +167,7 @@ impl Film {
                         pixels,
                         splats: Vec::new(),
                         squares: Vec::new(),
+                        layers: TileLayers::default(),
                         dropped: 0,
                     }));
                 }
@@ -165,13 +180,13 @@ impl Film {
             takes_splats: false,
             light_paths: AtomicU64::new(0),
             layers: Vec::new(),
+            kind: FilmKind::Rgb,
         }
     }
 
     /// The same film with sums for what light paths bring, see [`Film::splat`].
     pub fn with_splats(mut self) -> Self {
-        for tile in &mut self.tiles {
-            let tile = tile.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
+        for tile in self.tiles_mut() {
             tile.splats.resize(tile.pixels.len(), [0; 3]);
         }
         self.takes_splats = true;
@@ -180,8 +195,7 @@ impl Film {
 
     /// The same film with sums of squares, from which [`Film::noise`] tells how far it is from its end.
     pub fn with_squares(mut self) -> Self {
-        for tile in &mut self.tiles {
-            let tile = tile.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
+        for tile in self.tiles_mut() {
             tile.squares.resize(tile.pixels.len(), 0);
         }
         self
@@ -255,6 +269,13 @@ impl Film {
     /// The pixels that it holds.
     pub fn crop(&self) -> PixelRect {
         self.crop
+    }
+
+    /// Its tiles, to be changed.
+    pub(super) fn tiles_mut(&mut self) -> impl Iterator<Item = &mut TileSums> {
+        self.tiles
+            .iter_mut()
+            .map(|tile| tile.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner))
     }
 
     /// Its tiles, row by row, each behind its own lock.

@@ -3,6 +3,10 @@
 mod cone;
 mod mesh;
 mod packet;
+mod patch;
+mod patch_mesh;
+mod quadric;
+mod shape;
 mod sphere;
 mod surface;
 mod surface_lanes;
@@ -12,11 +16,15 @@ mod world;
 pub use cone::RayCone;
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket, RayQueue};
+pub use patch::{Patch, PatchHit};
+pub use patch_mesh::{PatchMesh, PatchSurface};
+pub use quadric::{Quadric, QuadricKind, QuadricPoint};
+pub use shape::{LineHits, Shape};
 pub use sphere::{Sphere, SphereHits};
 pub use surface::{Hit, SurfaceInteraction};
 pub use surface_lanes::SurfaceLanes;
 pub use triangle::{LEAST_ERROR, triangle_error};
-pub use world::{Geometry, Group, Instance, Opacity, Shape, World, WorldBuilder};
+pub use world::{Geometry, Group, Instance, Opacity, World, WorldBuilder};
 
 macro_rules! index_newtype {
     ($(#[$doc:meta])* $name:ident) => {
@@ -51,7 +59,7 @@ index_newtype! {
     GeometryId
 }
 index_newtype! {
-    /// A primitive of a geometry: a triangle or a sphere.
+    /// A primitive of a geometry: a triangle, a sphere, a patch.
     PrimitiveId
 }
 index_newtype! {

@@ -83,27 +83,11 @@ impl Sphere {
     }
 
     /// Where the infinite line of a ray meets the sphere; `None` where it misses.
-    ///
-    /// The discriminant is taken from the distance of the centre to the line, which does not cancel for a small sphere far away,
-    /// and the roots by the stable form of the quadratic (Haines et al. 2019, "Precision Improvements for Ray/Sphere
-    /// Intersection").
     #[inline]
     pub fn intersect(&self, origin: DVec3, direction: DVec3) -> Option<SphereHits> {
         let o = self.object_from_world.transform_point3(origin);
         let d = self.object_from_world.transform_vector3(direction);
-        let a = d.length_squared();
-        let b = -o.dot(d);
-        let r2 = self.radius * self.radius;
-        let to_line = o + d * (b / a);
-        let discriminant = r2 - to_line.length_squared();
-        if discriminant.is_nan() || discriminant < 0.0 {
-            return None;
-        }
-        // |o|² - r² by a difference of lengths: exact to the last bits where the ray starts on the sphere.
-        let distance = o.length();
-        let c = (distance - self.radius) * (distance + self.radius);
-        let q = b + (a * discriminant).sqrt().copysign(b);
-        let (first, second) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / a) };
+        let [first, second] = line_roots(o, d, self.radius)?;
         Some(SphereHits {
             enter: first.min(second),
             leave: first.max(second),
@@ -117,6 +101,28 @@ impl Sphere {
         let inside = f64::from(tnear)..=f64::from(tfar);
         [hits.enter, hits.leave].into_iter().find(|t| inside.contains(t))
     }
+}
+
+/// The distances, in units of `d`, at which a line from `o` along `d` is `radius` away from the origin; `None` if it never is, or if
+/// `d` is zero.
+///
+/// The discriminant is taken from the distance of the origin to the line, which does not cancel for a small sphere far away,
+/// and the roots by the stable form of the quadratic (Haines et al. 2019, "Precision Improvements for Ray/Sphere
+/// Intersection").
+#[inline]
+pub(super) fn line_roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let a = d.length_squared();
+    let b = -o.dot(d);
+    let to_line = o + d * (b / a);
+    let discriminant = radius * radius - to_line.length_squared();
+    if discriminant.is_nan() || discriminant < 0.0 {
+        return None;
+    }
+    // |o|² - r² by a difference of lengths: exact to the last bits where the ray starts on the sphere.
+    let distance = o.length();
+    let c = (distance - radius) * (distance + radius);
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    Some(if q == 0.0 { [0.0, 0.0] } else { [c / q, q / a] })
 }
 
 #[cfg(test)]

@@ -67,13 +67,37 @@ impl SurfaceInteraction {
     /// [error](SurfaceInteraction::error) `to_error`; both zero for a point in space).
     #[inline]
     pub fn spawn_ray_to(&self, to: Vec3, to_error: f32, to_ng: Vec3) -> Ray {
-        // Seen from afar, the direction's rounding and the backend's add to the error there, in proportion to the distance.
-        let from_afar = gamma(32) * to_ng.abs().dot((to - self.p).abs());
         let origin = offset_ray_origin(self.p, self.error, self.ng, to - self.p);
-        let end = offset_ray_origin(to, to_error + from_afar, to_ng, origin - to);
+        Ray::between(origin, to, to_error, to_ng, self.time)
+    }
+
+    /// The rest of `ray`, which met this surface and goes on through it.
+    #[inline]
+    pub fn rest_of_ray(&self, ray: &Ray) -> Ray {
+        let rest = self.spawn_ray(ray.direction);
+        if ray.tfar == f32::INFINITY {
+            return rest;
+        }
+        // To the same end, by a direction of which that is again one.
+        let end = ray.origin + ray.direction;
         Ray {
+            direction: end - rest.origin,
+            tfar: ray.tfar,
+            ..rest
+        }
+    }
+}
+
+impl Ray {
+    /// A ray from `origin` that ends just before `to`, at distance 1; see [`SurfaceInteraction::spawn_ray_to`].
+    #[inline]
+    pub fn between(origin: Vec3, to: Vec3, to_error: f32, to_ng: Vec3, time: f32) -> Self {
+        // Seen from afar, the direction's rounding and the backend's add to the error there, in proportion to the distance.
+        let from_afar = gamma(32) * to_ng.abs().dot((to - origin).abs());
+        let end = offset_ray_origin(to, to_error + from_afar, to_ng, origin - to);
+        Self {
             tfar: 1.0 - FAR_GAP,
-            ..Ray::new(origin, end - origin, self.time)
+            ..Self::new(origin, end - origin, time)
         }
     }
 }
@@ -91,25 +115,13 @@ impl World {
         let shape = &self.geometry(hit.geometry).shape;
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let Some(id) = hit.instance else {
-            return match shape {
-                Shape::Mesh(mesh) => {
-                    let surface = triangle_surface(mesh, hit.primitive.index(), origin, direction, ray.time);
-                    finish(&surface, ray, hit)
-                }
-                Shape::Spheres(spheres) => {
-                    let sphere = &spheres[hit.primitive.index()];
-                    finish(&sphere_surface(sphere, origin, direction, ray.tnear), ray, hit)
-                }
-            };
+            return finish(&local_surface(shape, origin, direction, ray, hit), ray, hit);
         };
         let motion = &self.instance(id).world_from_object;
         let (world_from_object, object_from_world) = (motion.at(ray.time), motion.inverse_at(ray.time));
         let origin = object_from_world.transform_point3(origin);
         let direction = object_from_world.transform_vector3(direction);
-        let local = match shape {
-            Shape::Mesh(mesh) => triangle_surface(mesh, hit.primitive.index(), origin, direction, ray.time),
-            Shape::Spheres(spheres) => sphere_surface(&spheres[hit.primitive.index()], origin, direction, ray.tnear),
-        };
+        let local = local_surface(shape, origin, direction, ray, hit);
         finish(
             &to_world(&local, &world_from_object, &object_from_world, motion.is_static()),
             ray,
@@ -118,18 +130,30 @@ impl World {
     }
 }
 
+/// What `hit` is of `shape`, for the line of `ray` in the space of its group.
+#[inline]
+fn local_surface(shape: &Shape, origin: DVec3, direction: DVec3, ray: &Ray, hit: Hit) -> LocalSurface {
+    let (primitive, tnear) = (hit.primitive.index(), f64::from(ray.tnear));
+    match shape {
+        Shape::Mesh(mesh) => triangle_surface(mesh, primitive, origin, direction, ray.time),
+        Shape::Spheres(spheres) => sphere_surface(&spheres[primitive], origin, direction, tnear),
+        Shape::Quadrics(quadrics) => quadrics[primitive].surface(origin, direction, tnear),
+        Shape::Patches(mesh) => mesh.surface(primitive).at(origin, direction, tnear),
+    }
+}
+
 /// A surface point in the space of its group.
-struct LocalSurface {
-    p: DVec3,
+pub(super) struct LocalSurface {
+    pub p: DVec3,
     /// As [`SurfaceInteraction::error`], less the rounding of `p`.
-    error: f64,
+    pub error: f64,
     /// Unit length.
-    ng: DVec3,
+    pub ng: DVec3,
     /// Unit length; 0 for that of `ng`.
-    ns: Vec3,
-    dpdu: Vec3,
-    dpdv: Vec3,
-    uv: Vec2,
+    pub ns: Vec3,
+    pub dpdu: Vec3,
+    pub dpdv: Vec3,
+    pub uv: Vec2,
 }
 
 fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
@@ -194,11 +218,11 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
     }
 }
 
-fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f32) -> LocalSurface {
+fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f64) -> LocalSurface {
     let object = sphere.object_from_world();
     let (o, d) = (object.transform_point3(origin), object.transform_vector3(direction));
     let t = match sphere.intersect(origin, direction) {
-        Some(hits) if hits.enter >= f64::from(tnear) => hits.enter,
+        Some(hits) if hits.enter >= tnear => hits.enter,
         Some(hits) => hits.leave,
         // A graze that the backend saw through an instance's rounded transform: the point of closest approach.
         None => -o.dot(d) / d.length_squared(),

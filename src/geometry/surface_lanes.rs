@@ -92,7 +92,7 @@ impl SurfaceLanes {
 fn world_mesh(world: &World, hit: Hit) -> Option<(&TriangleMesh, usize)> {
     match &world.geometry(hit.geometry).shape {
         Shape::Mesh(mesh) if hit.instance.is_none() => Some((mesh, hit.primitive.index())),
-        Shape::Mesh(_) | Shape::Spheres(_) => None,
+        _ => None,
     }
 }
 

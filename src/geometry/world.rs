@@ -1,17 +1,8 @@
 //! Everything that a ray can hit: geometries, groups of them, and instances of groups. The input of every backend.
 
-use super::{GeometryId, GroupId, InstanceId, Sphere, TriangleMesh};
+use super::{GeometryId, GroupId, InstanceId, Shape};
 use crate::error::{Error, Result};
 use crate::math::{AnimatedTransform, Bounds3};
-
-/// What a geometry is made of.
-#[derive(Clone, Debug)]
-pub enum Shape {
-    /// A triangle mesh; primitive ids are triangle indices.
-    Mesh(TriangleMesh),
-    /// Spheres; primitive ids are their indices.
-    Spheres(Vec<Sphere>),
-}
 
 /// Whether a hit counts as soon as it is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,18 +36,12 @@ impl Geometry {
 
     /// Number of primitives.
     pub fn primitive_count(&self) -> usize {
-        match &self.shape {
-            Shape::Mesh(mesh) => mesh.triangle_count(),
-            Shape::Spheres(spheres) => spheres.len(),
-        }
+        self.shape.primitive_count()
     }
 
     /// A box around it over all times, in the space of its group.
     pub fn bounds(&self) -> Bounds3 {
-        match &self.shape {
-            Shape::Mesh(mesh) => mesh.bounds(),
-            Shape::Spheres(spheres) => spheres.iter().map(Sphere::bounds).fold(Bounds3::EMPTY, Bounds3::union),
-        }
+        self.shape.bounds()
     }
 }
 
@@ -234,10 +219,7 @@ impl World {
 
     /// Whether anything in it moves.
     pub fn moves(&self) -> bool {
-        let deforms = |geometry: &Geometry| match &geometry.shape {
-            Shape::Mesh(mesh) => mesh.time_steps() > 1,
-            Shape::Spheres(_) => false,
-        };
+        let deforms = |geometry: &Geometry| matches!(&geometry.shape, Shape::Mesh(mesh) if mesh.is_moving());
         self.geometries.iter().any(deforms) || self.instances.iter().any(|i| !i.world_from_object.is_static())
     }
 
@@ -260,10 +242,7 @@ impl World {
 
     /// Bytes of the geometries' arrays.
     pub fn memory(&self) -> usize {
-        let shapes = self.geometries.iter().map(|geometry| match &geometry.shape {
-            Shape::Mesh(mesh) => mesh.memory(),
-            Shape::Spheres(spheres) => size_of_val(spheres.as_slice()),
-        });
+        let shapes = self.geometries.iter().map(|geometry| geometry.shape.memory());
         shapes.sum::<usize>() + size_of_val(self.instances.as_slice())
     }
 

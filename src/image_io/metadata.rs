@@ -25,8 +25,13 @@ pub struct ImageMetadata {
     pub scene_hash: String,
     /// Chromaticities (x, y) of red, green, blue and white, the standard attribute `chromaticities`: what colour space R, G and B are in.
     pub chromaticities: Chromaticities,
+    /// Whether there are channels of radiance by wavelength, which the attributes `spectralLayoutVersion` and `emissiveUnits` say
+    /// (Fichet, Pacanowski and Wilkie 2021).
+    pub is_spectral: bool,
 }
 
+const SPECTRAL_LAYOUT: &str = "spectralLayoutVersion";
+const EMISSIVE_UNITS: &str = "emissiveUnits";
 const SEED: &str = "lucerna:seed";
 const SPP: &str = "lucerna:spp";
 const INTEGRATOR: &str = "lucerna:integrator";
@@ -39,7 +44,7 @@ impl ImageMetadata {
     /// The EXR attributes.
     pub(super) fn to_attributes(&self) -> HashMap<Text, AttributeValue> {
         let text = |string: &str| AttributeValue::Text(latin1(string));
-        [
+        let mut attributes: HashMap<Text, AttributeValue> = [
             (SEED, text(&self.seed.to_string())),
             (SPP, AttributeValue::I32(self.spp)),
             (INTEGRATOR, text(&self.integrator)),
@@ -49,7 +54,12 @@ impl ImageMetadata {
             (SCENE_HASH, text(&self.scene_hash)),
         ]
         .map(|(name, value)| (latin1(name), value))
-        .into()
+        .into();
+        if self.is_spectral {
+            attributes.insert(latin1(SPECTRAL_LAYOUT), text("1.0"));
+            attributes.insert(latin1(EMISSIVE_UNITS), text("W.m^-2.sr^-1"));
+        }
+        attributes
     }
 
     /// The metadata among a file's attributes; `None` unless all of it is there with the right types.
@@ -77,6 +87,7 @@ impl ImageMetadata {
             render_seconds,
             scene_hash: text(SCENE_HASH)?,
             chromaticities,
+            is_spectral: text(SPECTRAL_LAYOUT).is_some(),
         })
     }
 }

@@ -21,6 +21,42 @@ pub(super) enum Origin {
     Sampled { p: Vec3, n: Vec3, pdf: SolidAnglePdf },
 }
 
+impl Origin {
+    /// The origin of a path that then passed media, with the mean probability `passed`.
+    #[inline]
+    pub fn after(self, passed: f32) -> Self {
+        match self {
+            Self::Delta => Self::Delta,
+            Self::Sampled { p, n, pdf } => Self::Sampled {
+                p,
+                n,
+                pdf: SolidAnglePdf(pdf.0 * passed),
+            },
+        }
+    }
+}
+
+/// Where light is looked for from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Viewpoint {
+    pub p: Vec3,
+    /// The shading normal, zero where there is no surface.
+    pub n: Vec3,
+    pub time: f32,
+}
+
+/// A point of a light, found from a scattering event.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FoundLight {
+    pub sample: LightSample,
+    /// What arrives by way of the event if nothing is between, divided by the density of the sample, not weighed.
+    pub value: SampledSpectrum,
+    /// The density of the sample; none if no direction could have met the light.
+    pub pdf_light: Option<SolidAnglePdf>,
+    /// The density of its direction by the other technique, times the number of such samples.
+    pub pdf_scatter: SolidAnglePdf,
+}
+
 /// How light is looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectLight {
@@ -81,30 +117,80 @@ impl DirectLight {
         numbers: &EventNumbers,
         lambda: &Wavelengths,
     ) -> Option<(LightSample, SampledSpectrum)> {
-        let chosen = scene.light_sampler().sample(si.p, si.ns, numbers.which_light)?;
-        let light = scene.light(chosen.light);
-        let sample = light.sample_li(si.p, si.time, numbers.light, lambda)?;
-        let bsdf = bsdf.eval(si.wo, sample.wi, TransportMode::Radiance)?;
-        if bsdf.f.is_black() {
-            return None;
-        }
-        let cos = if self.fault.is(Fault::MissingCosine) {
-            1.0
-        } else {
-            bsdf.cos_theta
+        let found = self.look_from_surface(scene, si, bsdf, numbers, lambda)?;
+        let weight = self.weight_of_light(found.pdf_light, found.pdf_scatter);
+        Some((found.sample, found.value * weight))
+    }
+
+    /// A point of a light, and what it sends by way of `bsdf`.
+    #[inline]
+    pub fn look_from_surface(
+        &self,
+        scene: &Scene,
+        si: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        numbers: &EventNumbers,
+        lambda: &Wavelengths,
+    ) -> Option<FoundLight> {
+        let from = Viewpoint {
+            p: si.p,
+            n: si.ns,
+            time: si.time,
         };
-        let mut factor = cos / chosen.pmf;
-        if let LightDensity::Continuous(pdf) = sample.density {
-            if self.strategy == Strategy::Mis {
-                let of_bsdf = SolidAnglePdf(self.bsdf_samples * bsdf.pdf.0);
-                factor *= self.weight(SolidAnglePdf(chosen.pmf * pdf.0), of_bsdf);
+        self.look(scene, &from, numbers, lambda, |wi| {
+            let bsdf = bsdf.eval(si.wo, wi, TransportMode::Radiance)?;
+            if bsdf.f.is_black() {
+                return None;
             }
+            let cos = if self.fault.is(Fault::MissingCosine) {
+                1.0
+            } else {
+                bsdf.cos_theta
+            };
+            Some((bsdf.f * cos, bsdf.pdf))
+        })
+    }
+
+    /// A point of a light, and what it sends by way of an event that scatters the share `scatter(wi).0` of it, where the other technique
+    /// draws `wi` with the density `scatter(wi).1`.
+    #[inline]
+    pub fn look(
+        &self,
+        scene: &Scene,
+        from: &Viewpoint,
+        numbers: &EventNumbers,
+        lambda: &Wavelengths,
+        scatter: impl FnOnce(Vec3) -> Option<(SampledSpectrum, SolidAnglePdf)>,
+    ) -> Option<FoundLight> {
+        let chosen = scene.light_sampler().sample(from.p, from.n, numbers.which_light)?;
+        let light = scene.light(chosen.light);
+        let sample = light.sample_li(from.p, from.time, numbers.light, lambda)?;
+        let (scattered, pdf) = scatter(sample.wi)?;
+        let mut factor = 1.0 / chosen.pmf;
+        let mut pdf_light = None;
+        if let LightDensity::Continuous(pdf) = sample.density {
+            pdf_light = Some(SolidAnglePdf(chosen.pmf * pdf.0));
             factor /= pdf.0;
         }
         if self.fault.is(Fault::WrongJacobian) {
             factor /= cos_at_light(&sample);
         }
-        Some((sample, bsdf.f * sample.li * factor))
+        Some(FoundLight {
+            value: scattered * sample.li * factor,
+            sample,
+            pdf_light,
+            pdf_scatter: SolidAnglePdf(self.bsdf_samples * pdf.0),
+        })
+    }
+
+    /// The weight of a light sample: `pdf_light` is its density, none if no direction could have met the light; `pdf_scatter` that of the
+    /// other technique, each times its number of samples.
+    #[inline]
+    pub fn weight_of_light(&self, pdf_light: Option<SolidAnglePdf>, pdf_scatter: SolidAnglePdf) -> f32 {
+        match pdf_light {
+            Some(pdf) if self.strategy == Strategy::Mis => self.weight(pdf, pdf_scatter),
+            _ => 1.0,
+        }
     }
 
     /// The weight of light that a ray met, which light samples from point p with normal n would have found with the density

@@ -1,5 +1,6 @@
 //! Slots and lanes: the state of a wave.
 
+use crate::accel::RayKind;
 use crate::geometry::{Ray, RayCone, RayQueue};
 use crate::material::TransportMode;
 use crate::sampling::SampleStream;
@@ -62,6 +63,8 @@ pub(super) const NO_SLOT: u32 = u32::MAX;
 pub(super) struct Batch<S> {
     /// Which end the paths started from: what they carry.
     pub mode: TransportMode,
+    /// Whose rays they are.
+    pub kind: RayKind,
     /// Scattering events before the rays.
     pub depth: u32,
     /// The paths.
@@ -74,6 +77,7 @@ impl<S> Default for Batch<S> {
     fn default() -> Self {
         Self {
             mode: TransportMode::Radiance,
+            kind: RayKind::Bounce,
             depth: 0,
             lanes: Vec::new(),
             rays: RayQueue::default(),
@@ -82,9 +86,9 @@ impl<S> Default for Batch<S> {
 }
 
 impl<S: Copy> Batch<S> {
-    /// Forgets all paths; others of `depth` will follow.
+    /// Forgets all paths; others of `depth` will follow, scattered ones unless [`Self::kind`] is set.
     pub fn restart(&mut self, mode: TransportMode, depth: u32) {
-        (self.mode, self.depth) = (mode, depth);
+        (self.mode, self.kind, self.depth) = (mode, RayKind::Bounce, depth);
         self.lanes.clear();
         self.rays.clear();
     }

@@ -10,7 +10,7 @@
 //! | 0 | film x, film y, lens, lens |
 //! | 1 | wavelength, time |
 //! | 2 + 2 d | light point, light point, which light, Russian roulette, at scattering event d |
-//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, which connections (bdpt), at scattering event d |
+//! | 3 + 2 d | BSDF direction, BSDF direction, which lobe, which connections (bdpt) or how far through media (path), at scattering event d |
 //!
 //! A photon has a stream of its own, by pass and kind of photon, with the groups of a light path; the wavelengths and the time of a pass are the
 //! same for all its photons and camera paths. A direction of a final gather has a branch of its sample's numbers.
@@ -32,6 +32,7 @@ mod photon;
 mod schedule;
 mod shadow;
 mod stage;
+mod volume;
 mod wave;
 
 use std::time::{Duration, Instant};
@@ -54,6 +55,7 @@ use crate::film::Film;
 use crate::material::Material;
 use crate::scene::{Scene, View};
 use photon::Stand;
+use volume::VolumePath;
 
 /// The integrators there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -249,6 +251,15 @@ impl Integrator {
         ))
     }
 
+    /// What of `scene` it cannot render at all, for people; `None` if there is nothing.
+    pub fn missing(&self, scene: &Scene) -> Option<String> {
+        let can = matches!(self, Self::Path(_));
+        (scene.has_media() && !can).then(|| {
+            let name = self.name();
+            format!("`{name}` does not render participating media: use the integrator `path`")
+        })
+    }
+
     /// An empty film for what it does with `view`.
     pub fn film(&self, view: &View) -> Film {
         match self {
@@ -272,6 +283,9 @@ impl Integrator {
         let start = Instant::now();
         let samples = view.samples.clone();
         let mut stats = match self {
+            Self::Path(path) if scene.has_media() => {
+                schedule::render_tiles(scene, view, film, &VolumePath(*path), samples, progress)
+            }
             Self::Path(path) => schedule::render_tiles(scene, view, film, path, samples, progress),
             Self::Kajiya(kajiya) => schedule::render_tiles(scene, view, film, kajiya, samples, progress),
             Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, samples, progress),

@@ -25,7 +25,7 @@ pub(super) struct EventNumbers {
     pub bsdf: Vec2,
     /// Which lobe.
     pub lobe: f32,
-    /// Which connections are made of those that could be.
+    /// Which connections are made of those that could be; how far a path that arrives here flew through media.
     pub connections: f32,
 }
 

@@ -128,20 +128,28 @@ impl PathIntegrator {
         if self.fault.is(Fault::EtaForgotten) {
             next.beta *= sample.eta * sample.eta;
         }
+        if self.survives(&mut next, stage.depth, numbers) {
+            stage.go_on(&next, &si.spawn_ray(sample.wi));
+        }
+    }
+
+    /// Whether a path goes on after the scattering event `depth`, which makes up for those that do not.
+    #[inline]
+    pub(super) fn survives<S>(&self, next: &mut Lane<S>, depth: u32, numbers: &EventNumbers) -> bool {
         // A path that was split is as worthy of going on as the whole.
-        let whole = if lane.split { self.splitting as f32 } else { 1.0 };
+        let whole = if next.split { self.splitting as f32 } else { 1.0 };
         let throughput = next.beta.max_value() * next.eta_scale * whole;
-        let survival = survival(stage.depth, throughput, self.max_depth.is_none());
+        let survival = survival(depth, throughput, self.max_depth.is_none());
         if survival < 1.0 {
             if numbers.roulette >= survival {
-                return;
+                return false;
             }
             next.beta *= 1.0 / survival;
         }
-        stage.go_on(&next, &si.spawn_ray(sample.wi));
+        true
     }
 
-    fn direct_light(&self) -> DirectLight {
+    pub(super) fn direct_light(&self) -> DirectLight {
         DirectLight {
             strategy: self.strategy,
             heuristic: self.heuristic,

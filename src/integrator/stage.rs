@@ -50,6 +50,23 @@ pub(super) trait Estimator: Sync + Sized {
         let _ = (memory, note);
     }
 
+    /// How many shadow rays the estimator keeps for itself, in `memory`.
+    fn own_shadows(memory: &Self::Memory<'_>) -> usize {
+        let _ = memory;
+        0
+    }
+
+    /// Traces those, and adds what they bring to the slots.
+    fn flush_own_shadows(
+        &self,
+        scene: &Scene,
+        memory: &mut Self::Memory<'_>,
+        slots: &mut [Slot],
+        stats: &mut RenderStats,
+    ) {
+        let _ = (scene, memory, slots, stats);
+    }
+
     /// Starts the light path of a slot.
     fn emit<'s>(&self, stage: &mut Stage<'_, 's, Self>, slot: u32, stream: SampleStream) {
         let _ = (stage, slot, stream);
@@ -111,6 +128,7 @@ pub(super) struct Stage<'a, 's, E: Estimator> {
     pub scene: &'s Scene,
     /// The picture.
     pub view: &'s View,
+    pub(super) estimator: &'s E,
     /// What the paths of the batch carry.
     pub mode: TransportMode,
     /// Scattering events before this stage.
@@ -124,6 +142,8 @@ pub(super) struct Stage<'a, 's, E: Estimator> {
     pub(super) landed: &'a mut Vec<SplatContribution>,
     pub(super) pending: &'a mut Vec<Batch<E::State>>,
     pub(super) spare: &'a mut Vec<Batch<E::State>>,
+    /// Where paths are collected that go on without having been scattered: no more than the batch has.
+    pub(super) passed: Batch<E::State>,
     /// Where paths that go on are collected.
     pub(super) next: Batch<E::State>,
 }
@@ -188,6 +208,19 @@ impl<E: Estimator> Stage<'_, '_, E> {
         }
     }
 
+    /// Sends a path on its way by `ray` that was not scattered: in a batch of its own, of the same depth.
+    pub fn pass_on(&mut self, lane: &Lane<E::State>, ray: &Ray) {
+        if !ray.is_valid() {
+            self.slot(lane).broken = true;
+            return;
+        }
+        if self.passed.lanes.is_empty() {
+            self.passed = self.spare.pop().unwrap_or_default();
+            self.passed.restart(self.mode, self.depth);
+        }
+        self.passed.push(lane, ray);
+    }
+
     /// Begins to collect paths of `depth`.
     pub(super) fn start_batch(&mut self, depth: u32) {
         self.next = self.spare.pop().unwrap_or_default();
@@ -204,9 +237,18 @@ impl<E: Estimator> Stage<'_, '_, E> {
         }
     }
 
+    /// Leaves all paths that go on to be traced.
+    pub(super) fn finish(&mut self) {
+        let passed = std::mem::take(&mut self.passed);
+        if !passed.lanes.is_empty() {
+            self.pending.push(passed);
+        }
+        self.finish_batch();
+    }
+
     /// Traces the shadow rays if there are many.
     pub(super) fn limit_shadows(&mut self, stats: &mut RenderStats) {
-        if self.shadows.len() + self.splats.len() >= MOST_SHADOWS {
+        if self.shadows.len() + self.splats.len() + E::own_shadows(self.memory) >= MOST_SHADOWS {
             self.flush_shadows(stats);
         }
     }
@@ -227,5 +269,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
                 E::arrived(memory, splat.note);
             }
         });
+        self.estimator
+            .flush_own_shadows(self.scene, self.memory, self.slots, stats);
     }
 }

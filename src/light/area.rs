@@ -1,4 +1,4 @@
-//! Surfaces that emit: single triangles, spheres and ellipsoids, at rest or in motion.
+//! Surfaces that emit: single triangles, spheres, other quadrics, patches; at rest or in motion.
 
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -47,6 +47,8 @@ pub enum Coordinates {
     Corners([Vec2; 3]),
     /// Longitude and latitude of a sphere that does not move, which this takes to its own space.
     Sphere(DMat3),
+    /// Each sampled point knows its own.
+    Own,
 }
 
 impl Coordinates {
@@ -55,7 +57,7 @@ impl Coordinates {
         let size = Vec2::new(size[0] as f32, size[1] as f32);
         match self {
             Self::Corners([p, q, r]) => ((p.max(*q).max(*r) - p.min(*q).min(*r)) * size).max_element(),
-            Self::Sphere(_) => size.max_element(),
+            Self::Sphere(_) | Self::Own => size.max_element(),
         }
     }
 }
@@ -252,7 +254,7 @@ impl AreaLight {
     /// Densities of [`Self::sample_le`] for the ray in direction `w` from the point `p` of the light at `time`, where its geometric
     /// normal is `ng`.
     pub(super) fn pdf_le(&self, p: Vec3, ng: Vec3, w: Vec3, time: f32) -> (AreaPdf, SolidAnglePdf) {
-        let position = self.at(time, |emitter| emitter.pdf_area(p));
+        let position = self.at(time, |emitter| emitter.pdf_area(p, ng));
         (position.unwrap_or(AreaPdf(0.0)), side_pdf(ng, self.two_sided, w))
     }
 
@@ -277,7 +279,10 @@ impl AreaLight {
         };
         let in_world = match (at, coordinates) {
             (SamplePlace::Triangle(b), Coordinates::Corners([p, q, r])) => return *p * b.x + *q * b.y + *r * b.z,
-            (SamplePlace::Triangle(_), Coordinates::Sphere(_)) | (SamplePlace::Parallelogram, _) => return Vec2::ZERO,
+            (SamplePlace::Coordinates(uv), _) => return uv,
+            (SamplePlace::Triangle(_), Coordinates::Sphere(_) | Coordinates::Own) | (SamplePlace::Parallelogram, _) => {
+                return Vec2::ZERO;
+            }
             (SamplePlace::Ellipsoid(outward), _) => return sphere_uv(outward),
             (SamplePlace::Sphere(outward), _) => outward,
         };
@@ -285,7 +290,7 @@ impl AreaLight {
         let object_from_world = match (moving, coordinates) {
             (Some(moving), _) => moving,
             (None, Coordinates::Sphere(fixed)) => *fixed,
-            (None, Coordinates::Corners(_)) => DMat3::IDENTITY,
+            (None, Coordinates::Corners(_) | Coordinates::Own) => DMat3::IDENTITY,
         };
         sphere_uv((object_from_world * in_world).normalize())
     }
@@ -345,6 +350,10 @@ impl AreaLight {
             // From outside about a quarter of the area is seen, projected.
             EmitterShape::Sphere { .. } | EmitterShape::Ellipsoid(_) => {
                 LightBounds::omnidirectional(bounds, luminance * 0.25 * area)
+            }
+            // Of an open surface more than that, from some places.
+            EmitterShape::Quadric(_) | EmitterShape::Patch(_) => {
+                LightBounds::omnidirectional(bounds, luminance * 0.5 * area)
             }
         }
     }

@@ -1,9 +1,10 @@
-//! Surfaces that emit as such: points sampled on triangles, spheres and ellipsoids, with their densities.
+//! Surfaces that emit as such: points sampled on each kind of shape, with their densities.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::geometry::{LEAST_ERROR, Sphere, triangle_error};
+use super::patch::PatchEmitter;
+use crate::geometry::{LEAST_ERROR, Quadric, Sphere, triangle_error};
 use crate::math::{Bounds3, DVec3, Frame, Vec2, Vec3, gamma};
 use crate::sampling::{AreaPdf, SolidAnglePdf, warp};
 
@@ -37,6 +38,10 @@ pub enum EmitterShape {
     },
     /// A sphere that its transform has made an ellipsoid.
     Ellipsoid(Arc<Sphere>),
+    /// A part of a sphere, a cylinder or a disk.
+    Quadric(Arc<Quadric>),
+    /// A bilinear patch.
+    Patch(Arc<PatchEmitter>),
 }
 
 /// A point of an emitter, with its density: an [`AreaPdf`] or a [`SolidAnglePdf`].
@@ -61,13 +66,15 @@ pub(super) enum SamplePlace {
     Sphere(DVec3),
     /// Unit direction from the centre of an ellipsoid, in object space.
     Ellipsoid(DVec3),
+    /// Texture coordinates of other shapes.
+    Coordinates(Vec2),
 }
 
 /// A shape with what does not change from point to point.
 #[derive(Clone, Debug)]
 pub(super) struct Emitter {
     pub shape: EmitterShape,
-    /// Of a point chosen uniformly by area; not known of an ellipsoid, where none is.
+    /// Of a point chosen uniformly by area; not known where none is.
     uniform: AreaPdf,
     /// Of a point of a plane shape: that of its plane, and the rounding of three weighted corners.
     error: f32,
@@ -77,7 +84,7 @@ impl Emitter {
     /// `None` if the shape has no area.
     pub fn new(shape: EmitterShape) -> Option<Self> {
         let area = match &shape {
-            EmitterShape::Ellipsoid(_) => f32::INFINITY,
+            EmitterShape::Ellipsoid(_) | EmitterShape::Quadric(_) | EmitterShape::Patch(_) => f32::INFINITY,
             _ => shape.area(),
         };
         (area > 0.0).then(|| Self {
@@ -92,18 +99,20 @@ impl Emitter {
     pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
         match self.cone(from) {
             Some(cone) => warp::uniform_cone_pdf(cone.one_minus_cos),
-            None => area_to_solid_angle(self.pdf_area(p), from, p, ng),
+            None => area_to_solid_angle(self.pdf_area(p, ng), from, p, ng),
         }
     }
 
-    /// Density of [`Self::sample_area`] for the point `p`.
+    /// Density of [`Self::sample_area`] for the point `p`, where the geometric normal is `ng`.
     #[inline]
-    pub fn pdf_area(&self, p: Vec3) -> AreaPdf {
+    pub fn pdf_area(&self, p: Vec3, ng: Vec3) -> AreaPdf {
         match &self.shape {
             EmitterShape::Ellipsoid(sphere) => {
                 let outward = sphere.object_from_world().transform_point3(p.as_dvec3()).normalize();
                 ellipsoid_pdf(sphere, outward)
             }
+            EmitterShape::Quadric(quadric) => AreaPdf(quadric.pdf(p.as_dvec3()) as f32),
+            EmitterShape::Patch(patch) => AreaPdf(patch.pdf(p.as_dvec3(), ng.as_dvec3()) as f32),
             _ => self.uniform,
         }
     }
@@ -133,8 +142,8 @@ impl Emitter {
         SurfaceSample { p, error, ng, pdf, at }
     }
 
-    /// A point of the surface for `u` in [0, 1)², wherever it is seen from: uniform by area; of an ellipsoid the image of a uniform
-    /// point of the sphere.
+    /// A point of the surface for `u` in [0, 1)², wherever it is seen from: uniform by area; of an ellipsoid or another quadric the
+    /// image of a uniform point of object space; of a patch nearly uniform.
     #[inline]
     pub fn sample_area(&self, u: Vec2) -> SurfaceSample<AreaPdf> {
         let plane = |p: Vec3, ng: Vec3, at: SamplePlace| SurfaceSample {
@@ -159,21 +168,39 @@ impl Emitter {
                 sphere_point(*center, *radius, *inward, outward, self.uniform)
             }
             EmitterShape::Ellipsoid(sphere) => sample_ellipsoid(sphere, u),
+            EmitterShape::Quadric(quadric) => {
+                let sample = quadric.sample(u);
+                let at = SamplePlace::Coordinates(sample.uv);
+                surface_point(sample.p, quadric.error(), sample.ng, AreaPdf(sample.pdf as f32), at)
+            }
+            EmitterShape::Patch(patch) => {
+                let (uv, pdf) = patch.sample(u);
+                let surface = &patch.surface;
+                let at = SamplePlace::Coordinates(surface.texture_coordinates(uv));
+                let (p, ng) = (surface.patch.point(uv), surface.ng(uv));
+                surface_point(p, surface.error(), ng, AreaPdf(pdf as f32), at)
+            }
         }
+    }
+}
+
+/// A point that a backend sees off its place by `error`, and by rounding.
+fn surface_point<M>(p: DVec3, error: f64, ng: DVec3, pdf: M, at: SamplePlace) -> SurfaceSample<M> {
+    let (p, ng) = (p.as_vec3(), ng.as_vec3());
+    SurfaceSample {
+        p,
+        error: ng.abs().dot(p.abs()) * gamma(3) + error as f32,
+        ng,
+        pdf,
+        at,
     }
 }
 
 /// The point of a sphere in the unit direction `outward` from its centre.
 fn sphere_point<M>(center: DVec3, radius: f64, inward: bool, outward: DVec3, pdf: M) -> SurfaceSample<M> {
-    let p = (center + outward * radius).as_vec3();
-    let ng = if inward { -outward } else { outward }.as_vec3();
-    SurfaceSample {
-        p,
-        error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * radius) as f32,
-        ng,
-        pdf,
-        at: SamplePlace::Sphere(outward),
-    }
+    let ng = if inward { -outward } else { outward };
+    let at = SamplePlace::Sphere(outward);
+    surface_point(center + outward * radius, LEAST_ERROR * radius, ng, pdf, at)
 }
 
 /// The image of a uniform point of the unit sphere.
@@ -181,15 +208,10 @@ fn sample_ellipsoid(sphere: &Sphere, u: Vec2) -> SurfaceSample<AreaPdf> {
     let outward = warp::sample_uniform_sphere(u).as_dvec3().normalize();
     let world = sphere.world_from_object().transform_point3(outward * sphere.radius());
     let normal = (sphere.object_from_world().matrix3.transpose() * outward).normalize();
-    let ng = if sphere.has_flipped_normal() { -normal } else { normal }.as_vec3();
-    let p = world.as_vec3();
-    SurfaceSample {
-        p,
-        error: ng.abs().dot(p.abs()) * gamma(3) + (LEAST_ERROR * (world - sphere.center()).length()) as f32,
-        ng,
-        pdf: ellipsoid_pdf(sphere, outward),
-        at: SamplePlace::Ellipsoid(outward),
-    }
+    let ng = if sphere.has_flipped_normal() { -normal } else { normal };
+    let error = LEAST_ERROR * (world - sphere.center()).length();
+    let at = SamplePlace::Ellipsoid(outward);
+    surface_point(world, error, ng, ellipsoid_pdf(sphere, outward), at)
 }
 
 /// The density by area of the image of a uniform point of the unit sphere: areas grow by |det M| |M⁻ᵀ n|.
@@ -249,11 +271,11 @@ impl EmitterShape {
                 let largest = [a, b, a + edges[1]].iter().fold(corner.abs(), |m, v| m.max(v.abs()));
                 plane_error(&[*corner, a, b], ng, largest)
             }
-            Self::Sphere { .. } | Self::Ellipsoid(_) => 0.0,
+            Self::Sphere { .. } | Self::Ellipsoid(_) | Self::Quadric(_) | Self::Patch(_) => 0.0,
         }
     }
 
-    /// One side. Slow for an ellipsoid.
+    /// One side. Slow for ellipsoids and other quadrics.
     pub fn area(&self) -> f32 {
         match self {
             Self::Triangle {
@@ -262,6 +284,8 @@ impl EmitterShape {
             Self::Parallelogram { edges: [a, b], .. } => a.cross(*b).length(),
             Self::Sphere { radius, .. } => (4.0 * PI * radius * radius) as f32,
             Self::Ellipsoid(sphere) => ellipsoid_area(sphere),
+            Self::Quadric(quadric) => quadric.area() as f32,
+            Self::Patch(patch) => patch.area() as f32,
         }
     }
 
@@ -278,6 +302,8 @@ impl EmitterShape {
                 Bounds3::from_points([center.as_vec3()]).expand(*radius as f32 * (1.0 + gamma(2)) + largest * gamma(1))
             }
             Self::Ellipsoid(sphere) => sphere.bounds(),
+            Self::Quadric(quadric) => quadric.bounds(),
+            Self::Patch(patch) => patch.surface.patch.bounds(),
         }
     }
 }

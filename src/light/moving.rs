@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::emitter::{Emitter, EmitterShape};
-use crate::geometry::Sphere;
+use super::patch::PatchEmitter;
+use crate::geometry::{PatchSurface, Quadric, Sphere};
 use crate::math::{AnimatedTransform, Bounds3, DAffine3, DMat3, DVec3, Vec3, transform_point};
 
 /// A shape that emits, at every time.
@@ -21,6 +22,8 @@ enum Kind {
         side: Side,
     },
     Sphere(Sphere),
+    Quadric(Quadric),
+    Patch(PatchSurface),
 }
 
 /// On which side of a triangle its geometric normal is.
@@ -51,19 +54,39 @@ impl MovingEmitter {
         }
     }
 
+    /// A part of a sphere, a cylinder or a disk that moves with a transform.
+    pub fn quadric(quadric: Quadric, world_from_object: AnimatedTransform) -> Self {
+        let kind = Kind::Quadric(quadric);
+        Self {
+            world_from_object,
+            kind,
+        }
+    }
+
+    /// A bilinear patch that moves with a transform.
+    pub fn patch(surface: PatchSurface, world_from_object: AnimatedTransform) -> Self {
+        let kind = Kind::Patch(surface);
+        Self {
+            world_from_object,
+            kind,
+        }
+    }
+
     /// The emitter at a time in [0, 1]; `None` if it has no area then.
     pub(super) fn at(&self, time: f32) -> Option<Emitter> {
         let world = self.world_from_object.at(time);
         Emitter::new(match &self.kind {
             Kind::Triangle { steps, side } => triangle_at(&corners_at(steps, time), *side, &world),
             Kind::Sphere(sphere) => sphere_shape(&moved(sphere, &world)?),
+            Kind::Quadric(quadric) => EmitterShape::Quadric(Arc::new(quadric.transformed(&world)?)),
+            Kind::Patch(surface) => EmitterShape::Patch(Arc::new(PatchEmitter::new(surface.transformed(&world))?)),
         })
     }
 
     /// From the world to the object space of a sphere at a time.
     pub(super) fn object_from_world(&self, time: f32) -> Option<DMat3> {
         match &self.kind {
-            Kind::Triangle { .. } => None,
+            Kind::Triangle { .. } | Kind::Quadric(_) | Kind::Patch(_) => None,
             Kind::Sphere(sphere) => Some(
                 moved(sphere, &self.world_from_object.at(time))?
                     .object_from_world()
@@ -77,6 +100,8 @@ impl MovingEmitter {
         let in_object = match &self.kind {
             Kind::Triangle { steps, .. } => Bounds3::from_points(steps.iter().flatten().copied()),
             Kind::Sphere(sphere) => sphere.bounds(),
+            Kind::Quadric(quadric) => quadric.bounds(),
+            Kind::Patch(surface) => surface.patch.bounds(),
         };
         self.world_from_object.moving_bounds(&in_object)
     }

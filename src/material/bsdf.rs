@@ -2,7 +2,7 @@
 
 use super::sides::Sides;
 use super::{
-    Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Measured, OrenNayar, Plastic, Principled,
+    Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Plastic, Principled,
     ThinDielectric, Tinted,
 };
 use crate::math::{Frame, Vec2, Vec3};
@@ -160,6 +160,7 @@ pub enum Lobe<'a> {
     Measured(Measured<'a>),
     Plastic(Plastic<'a>),
     Tinted(Tinted),
+    Hair(Hair),
 }
 
 // The commonest lobe is where it is asked for, the others are calls away: together they would push its numbers out of registers.
@@ -184,6 +185,7 @@ impl Lobe<'_> {
             Self::Measured(lobe) => lobe.eval(wo, wi),
             Self::Plastic(lobe) => lobe.eval(wo, wi),
             Self::Tinted(lobe) => lobe.eval(wo, wi, mode),
+            Self::Hair(lobe) => lobe.eval(wo, wi),
             Self::Conductor(lobe) => lobe.eval(wo, wi),
             Self::Dielectric(lobe) => lobe.eval(wo, wi, mode),
         }
@@ -209,6 +211,7 @@ impl Lobe<'_> {
             Self::Measured(lobe) => lobe.sample_f(wo, u),
             Self::Plastic(lobe) => lobe.sample_f(wo, u_lobe, u),
             Self::Tinted(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Self::Hair(lobe) => lobe.sample_f(wo, u_lobe, u),
             Self::Conductor(lobe) => lobe.sample_f(wo, u),
             Self::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
         }
@@ -265,7 +268,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::DiffuseTransmission(_)
             | Lobe::Principled(_)
             | Lobe::Plastic(_)
-            | Lobe::Measured(_) => false,
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
             Lobe::ThinDielectric(_) => true,
             Lobe::Tinted(lobe) => lobe.is_delta(),
             Lobe::Layered(lobe) => lobe.is_delta(),
@@ -292,9 +296,11 @@ impl<'a> Bsdf<'a> {
                 | Lobe::Plastic(_)
                 | Lobe::Measured(_) => false,
                 Lobe::Tinted(lobe) => lobe.transmits(),
-                Lobe::DiffuseTransmission(_) | Lobe::Dielectric(_) | Lobe::ThinDielectric(_) | Lobe::Principled(_) => {
-                    true
-                }
+                Lobe::DiffuseTransmission(_)
+                | Lobe::Dielectric(_)
+                | Lobe::ThinDielectric(_)
+                | Lobe::Principled(_)
+                | Lobe::Hair(_) => true,
             }
     }
 
@@ -315,7 +321,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::Plastic(_)
-            | Lobe::Measured(_) => false,
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
             Lobe::Tinted(lobe) => lobe.is_specular(),
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
@@ -348,7 +355,8 @@ impl<'a> Bsdf<'a> {
             | Lobe::Principled(_)
             | Lobe::Plastic(_)
             | Lobe::Tinted(_)
-            | Lobe::Measured(_) => false,
+            | Lobe::Measured(_)
+            | Lobe::Hair(_) => false,
         }
     }
 

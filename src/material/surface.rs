@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Interlayer, Layered, Lobe, Measured,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe, Measured,
     MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
     PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
 };
@@ -71,6 +71,8 @@ pub enum Material {
         /// The coat.
         coat: Arc<Coat>,
     },
+    /// No surface, only a boundary between media, which a path passes without being scattered.
+    Interface,
     /// One of two materials, from point to point.
     Mix(Arc<MixMaterial>),
     /// By the parameters of artists.
@@ -85,6 +87,8 @@ pub enum Material {
     Tinted(Arc<TintedMaterial>),
     /// A diffuse base under a dielectric boundary, in closed form.
     Plastic(Arc<PlasticMaterial>),
+    /// A fibre.
+    Hair(Arc<HairMaterial>),
 }
 
 /// A conductor, dielectric or thin dielectric with factors.
@@ -207,7 +211,12 @@ impl Material {
     /// Whether some point of it may have delta lobes: be a mirror or clear glass, alone or under or over something else.
     pub fn may_have_delta(&self) -> bool {
         match self {
-            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Principled(_) => false,
+            Self::Diffuse { .. }
+            | Self::DiffuseTransmission { .. }
+            | Self::Measured(_)
+            | Self::Principled(_)
+            | Self::Hair(_)
+            | Self::Interface => false,
             Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => roughness.may_be_smooth(),
             Self::ThinDielectric { .. } => true,
             Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
@@ -219,10 +228,33 @@ impl Material {
         }
     }
 
+    /// Whether it may refract wavelengths differently, which ends all but one of a path's.
+    pub fn disperses(&self) -> bool {
+        match self {
+            Self::Dielectric { eta, .. } => !eta.is_constant_over_wavelengths(),
+            Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => {
+                !coat.eta.is_constant_over_wavelengths()
+            }
+            Self::Mix(mix) => mix.materials.iter().any(Self::disperses),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::disperses),
+            Self::Tinted(tinted) => tinted.material.disperses(),
+            Self::Relief(relief) => relief.material.disperses(),
+            Self::Diffuse { .. }
+            | Self::DiffuseTransmission { .. }
+            | Self::Conductor { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Hair(_)
+            | Self::Interface
+            | Self::Plastic(_)
+            | Self::Principled(_)
+            | Self::Measured(_) => false,
+        }
+    }
+
     /// Whether no point of it can [be specular](Bsdf::is_specular), whatever its textures say, nor has delta lobes.
     pub fn is_never_specular(&self) -> bool {
         match self {
-            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) => true,
+            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Hair(_) => true,
             Self::Mix(mix) => mix.materials.iter().all(Self::is_never_specular),
             Self::Sided(sides) => sides.iter().flatten().all(Self::is_never_specular),
             Self::Plastic(plastic) => !plastic.tables.is_smooth(),
@@ -230,6 +262,7 @@ impl Material {
             Self::Conductor { .. }
             | Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
+            | Self::Interface
             | Self::CoatedDiffuse { .. }
             | Self::CoatedConductor { .. }
             | Self::Tinted(_)
@@ -289,6 +322,8 @@ impl Material {
                 let lobe = lobe.with_multiple_scattering(*multiple_scattering);
                 (Lobe::Dielectric(lobe), is_anisotropic(facets))
             }
+            // Who does not know of media sees a sheet of nothing.
+            Self::Interface => (Lobe::ThinDielectric(ThinDielectric::new(SampledSpectrum::ONE)), false),
             Self::ThinDielectric { eta } => (Lobe::ThinDielectric(ThinDielectric::new(eta.sample(lambda))), false),
             Self::CoatedDiffuse { reflectance, coat } => {
                 let (boundary, anisotropic) = coat.boundary(si, lambda);
@@ -328,6 +363,7 @@ impl Material {
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
             Self::Measured(tables) => (Lobe::Measured(Measured::new(tables, lambda)), true),
+            Self::Hair(hair) => (Lobe::Hair(hair.at(si, lambda)), true),
         }
     }
 

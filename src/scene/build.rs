@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::lights::LightBuilder;
 use super::materials::compile_materials;
+use super::media;
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
 use super::textures::TextureCompiler;
@@ -14,6 +15,7 @@ use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
 use crate::light::{LightId, LightSampler};
+use crate::material::Material;
 use crate::math::AnimatedTransform;
 use crate::texture::FloatTexture;
 
@@ -53,6 +55,13 @@ impl Scene {
             return Err(Error::Scene(builder.problems));
         }
         let materials = compile_materials(&desc.materials, &mut builder.textures);
+        let media = desc
+            .media
+            .iter()
+            .map(|medium| media::compile(medium, spectra))
+            .collect();
+        let is_interface = |surface: &Surface| matches!(materials[surface.material as usize], Material::Interface);
+        let has_interfaces = builder.surfaces.iter().any(is_interface);
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
@@ -71,7 +80,10 @@ impl Scene {
             accel,
             color: options.color,
             bounds,
+            disperses: materials.iter().any(Material::disperses),
             materials,
+            media,
+            has_interfaces,
             has_cutouts: builder.surfaces.iter().any(|surface| surface.alpha.is_some()),
             surfaces: builder.surfaces,
             lights: builder.lights.lights,
@@ -128,7 +140,7 @@ impl SceneBuilder<'_> {
 
     /// Adds a shape's geometry and its lights; one that moves gets a group of its own and the instance that moves it.
     fn add_shape(&mut self, shape: &ShapeDesc) -> Option<(GeometryId, Option<Instance>)> {
-        let mut placed = match place(shape) {
+        let mut placed = match place(shape, &mut self.textures) {
             Ok(placed) => placed,
             Err(message) => {
                 self.problem(shape.span, message);
@@ -150,6 +162,7 @@ impl SceneBuilder<'_> {
         let id = self.world.add_geometry(placed.geometry);
         self.surfaces.push(Surface {
             material: shape.material.0,
+            media: shape.media.as_ref().map(media::interface),
             lights,
             alpha,
         });

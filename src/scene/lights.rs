@@ -10,8 +10,8 @@ use crate::geometry::{Geometry, Shape, TriangleMesh};
 use crate::image_io::Image;
 use crate::light::{
     AreaLight, Behind, Coordinates, DistantLight, EmissionImage, EmitterShape, EnvironmentLight, GoniometricLight,
-    ImageEnvironment, Light, LightId, MovingEmitter, Place, PointLight, Portal, PortalEnvironment, ProjectionLight,
-    Side, SpotLight, facing,
+    ImageEnvironment, Light, LightId, MovingEmitter, PatchEmitter, Place, PointLight, Portal, PortalEnvironment,
+    ProjectionLight, Side, SpotLight, facing,
 };
 use crate::math::{AnimatedTransform, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use crate::sampling::{Cell, SphereMap};
@@ -276,6 +276,25 @@ fn emitter(
             };
             Some((light?, Coordinates::Sphere(sphere.object_from_world().matrix3)))
         }
+        Shape::Quadrics(quadrics) => {
+            let quadric = quadrics[primitive].clone();
+            let light = if motion.is_some() {
+                AreaLight::moving(MovingEmitter::quadric(quadric, moving()), radiance, two_sided)
+            } else {
+                AreaLight::new(EmitterShape::Quadric(Arc::new(quadric)), radiance, two_sided)
+            };
+            Some((light?, Coordinates::Own))
+        }
+        Shape::Patches(mesh) => {
+            let surface = mesh.surface(primitive);
+            let light = if motion.is_some() {
+                AreaLight::moving(MovingEmitter::patch(surface, moving()), radiance, two_sided)
+            } else {
+                let patch = Arc::new(PatchEmitter::new(surface)?);
+                AreaLight::new(EmitterShape::Patch(patch), radiance, two_sided)
+            };
+            Some((light?, Coordinates::Own))
+        }
     }
 }
 
@@ -292,7 +311,7 @@ fn parallelogram(geometry: &Geometry, first: usize) -> Option<EmitterShape> {
         Shape::Mesh(mesh) if !mesh.is_moving() && first + 1 < mesh.triangle_count() => {
             triangle(mesh, first).joined(&triangle(mesh, first + 1))
         }
-        Shape::Mesh(_) | Shape::Spheres(_) => None,
+        _ => None,
     }
 }
 

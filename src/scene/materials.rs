@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
-use crate::desc::{CoatDesc, ConductorDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc};
+use crate::desc::{
+    CoatDesc, ConductorDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc,
+    PrincipledDesc,
+};
 use crate::material::{
-    Coat, ConductorIor, Material, MeasuredTables, MixMaterial, PlasticMaterial, PlasticTables, PrincipledMaterial,
-    PrincipledTables, Relief, Roughness, TintedMaterial,
+    Coat, ConductorIor, HairColor, HairMaterial, Material, MeasuredTables, MixMaterial, PlasticMaterial, PlasticTables,
+    PrincipledMaterial, PrincipledTables, Relief, Roughness, TintedMaterial,
 };
 
 /// All materials of a scene, by their ids.
@@ -112,6 +115,8 @@ impl MaterialCompiler<'_, '_> {
                 transmittance: self.textures.spectrum(transmittance, SpectrumUse::Albedo),
             })),
             MaterialKind::Plastic(desc) => Material::Plastic(Arc::new(plastic(desc, self.textures))),
+            MaterialKind::Hair(desc) => Material::Hair(Arc::new(hair(desc, self.textures))),
+            MaterialKind::Interface => Material::Interface,
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
                 materials: materials.map(|id| self.material(id)),
                 amount: self.textures.float(amount),
@@ -153,6 +158,25 @@ fn plastic(desc: &PlasticDesc, textures: &mut TextureCompiler<'_>) -> PlasticMat
         specular: textures.spectrum(&desc.specular_reflectance, SpectrumUse::Albedo),
         nonlinear: desc.nonlinear,
         tables: PlasticTables::new(desc.eta, facets),
+    }
+}
+
+fn hair(desc: &HairDesc, textures: &mut TextureCompiler<'_>) -> HairMaterial {
+    // What a unit of the brown and of the red pigment absorbs (d'Eon et al. 2011, as in pbrt-v4).
+    const PIGMENTS: [[f32; 3]; 2] = [[0.419, 0.697, 1.37], [0.187, 0.4, 1.05]];
+    HairMaterial {
+        color: match &desc.color {
+            HairColorDesc::Absorption(sigma) => HairColor::Absorption(textures.spectrum(sigma, SpectrumUse::Unbounded)),
+            HairColorDesc::Reflectance(color) => HairColor::Reflectance(textures.spectrum(color, SpectrumUse::Albedo)),
+            HairColorDesc::Pigments { eumelanin, pheomelanin } => {
+                let [brown, red] = PIGMENTS.map(|rgb| textures.spectra.absorption_of_rgb(rgb));
+                HairColor::Pigments([(textures.float(eumelanin), brown), (textures.float(pheomelanin), red)])
+            }
+        },
+        eta: desc.eta,
+        beta_m: textures.float(&desc.beta_m),
+        beta_n: textures.float(&desc.beta_n),
+        alpha: textures.float(&desc.alpha),
     }
 }
 

@@ -5,21 +5,25 @@ mod build;
 mod cutouts;
 mod lights;
 mod materials;
+mod media;
 mod shapes;
 mod spectra;
+mod tessellate;
 mod textures;
 mod view;
 
 use std::sync::Arc;
 
 use crate::accel::{Accel, Backend, BuildOptions};
-use crate::geometry::{GeometryId, PrimitiveId, World};
+use crate::geometry::{GeometryId, PrimitiveId, SurfaceInteraction, World};
 use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
 use crate::material::Material;
-use crate::math::Bounds3;
+use crate::math::{Bounds3, Vec3};
+use crate::medium::{HomogeneousMedium, MediumId};
 use crate::spectrum::ColorMode;
 use crate::texture::FloatTexture;
 
+use media::MediumInterface;
 pub use view::{View, ViewOverrides};
 
 /// How to build a [`Scene`].
@@ -40,8 +44,13 @@ pub struct Scene {
     color: ColorMode,
     bounds: Bounds3,
     materials: Vec<Material>,
+    media: Vec<HomogeneousMedium>,
     /// By geometry.
     surfaces: Vec<Surface>,
+    /// Whether any material may refract wavelengths differently.
+    disperses: bool,
+    /// Whether any of the surfaces is only a boundary between media.
+    has_interfaces: bool,
     /// Whether any of them has an alpha.
     has_cutouts: bool,
     lights: Vec<Light>,
@@ -61,6 +70,8 @@ pub struct Scene {
 struct Surface {
     /// Index of the material.
     material: u32,
+    /// What is on its two sides, if that differs.
+    media: Option<MediumInterface>,
     /// By primitive; empty if none emits.
     lights: Vec<Option<LightId>>,
     /// How much of it there is, if rays pass some of it.
@@ -109,6 +120,43 @@ impl Scene {
     /// All materials.
     pub fn materials(&self) -> &[Material] {
         &self.materials
+    }
+
+    /// A medium.
+    #[inline]
+    pub fn medium(&self, id: MediumId) -> &HomogeneousMedium {
+        &self.media[id.index()]
+    }
+
+    /// Whether there are any media, or boundaries between them.
+    pub fn has_media(&self) -> bool {
+        !self.media.is_empty() || self.has_interfaces
+    }
+
+    /// Whether a geometry is only a boundary between media.
+    #[inline]
+    pub fn is_interface(&self, geometry: GeometryId) -> bool {
+        matches!(self.material(geometry), Material::Interface)
+    }
+
+    /// The medium on the side of a surface that `w` points to, where it is `current` if the surface does not say.
+    #[inline]
+    pub fn medium_beyond(&self, si: &SurfaceInteraction, w: Vec3, current: Option<MediumId>) -> Option<MediumId> {
+        match self.surfaces[si.hit.geometry.index()].media {
+            Some(media) if w.dot(si.ng) > 0.0 => media.exterior,
+            Some(media) => media.interior,
+            None => current,
+        }
+    }
+
+    /// Whether any material may refract wavelengths differently.
+    pub fn disperses(&self) -> bool {
+        self.disperses
+    }
+
+    /// Whether any geometry is only a boundary between media.
+    pub fn has_interfaces(&self) -> bool {
+        self.has_interfaces
     }
 
     /// The light that a primitive is, if it emits.

@@ -1,8 +1,10 @@
 //! Shapes of a description to geometries of a world.
 
-use crate::desc::{MeshDesc, MotionDesc, ShapeDesc, ShapeKind};
-use crate::geometry::{Geometry, Shape, Sphere, TriangleMesh};
-use crate::math::{AnimatedTransform, DAffine3, Vec3, transform_point};
+use super::tessellate::{displaced, subdivided};
+use super::textures::TextureCompiler;
+use crate::desc::{MeshDesc, MotionDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
+use crate::geometry::{Geometry, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh};
+use crate::math::{AnimatedTransform, DAffine3, DVec3, Vec2, Vec3, transform_point};
 
 /// A shape as a geometry, and how the geometry then moves.
 pub(super) struct PlacedShape {
@@ -13,25 +15,56 @@ pub(super) struct PlacedShape {
 
 /// Makes the geometry of a shape: in the space it is placed in if that is the same at all times, in its own if it moves.
 /// The error is a message for the shape's place in the file.
-pub(super) fn place(shape: &ShapeDesc) -> Result<PlacedShape, String> {
+pub(super) fn place(shape: &ShapeDesc, textures: &mut TextureCompiler) -> Result<PlacedShape, String> {
     let (transform, motion) = if shape.world_from_object.is_static() {
         (shape.world_from_object.start, None)
     } else {
         (DAffine3::IDENTITY, Some(animated(&shape.world_from_object)?))
     };
-    let shape = match &shape.kind {
-        ShapeKind::TriangleMesh(mesh) => {
-            Shape::Mesh(mesh_in_space(mesh, &transform, shape.reverse_orientation).map_err(|e| e.to_string())?)
-        }
-        ShapeKind::Sphere { radius } => {
-            let sphere = Sphere::new(*radius, transform).ok_or("the sphere has no extent")?;
-            Shape::Spheres(vec![sphere.with_flipped_normal(shape.reverse_orientation)])
-        }
-    };
     Ok(PlacedShape {
-        geometry: Geometry::opaque(shape),
+        geometry: Geometry::opaque(geometry(shape, &transform, textures)?),
         motion,
     })
+}
+
+fn geometry(shape: &ShapeDesc, transform: &DAffine3, textures: &mut TextureCompiler) -> Result<Shape, String> {
+    let reverse = shape.reverse_orientation;
+    let in_space = |mesh: &MeshDesc| mesh_in_space(mesh, transform, reverse).map(Shape::Mesh);
+    match &shape.kind {
+        ShapeKind::TriangleMesh(mesh) => in_space(mesh),
+        ShapeKind::LoopSubdivision { cage, levels } => in_space(&subdivided(cage, *levels)?),
+        ShapeKind::DisplacedMesh { mesh, displacement } => {
+            let texture = textures.float(&displacement.texture);
+            let world_from_object = &shape.world_from_object.start;
+            in_space(&displaced(mesh, &texture, displacement.edge_length, world_from_object)?)
+        }
+        ShapeKind::BilinearMesh(mesh) => patches_in_space(mesh, transform, reverse),
+        ShapeKind::Sphere { radius } => {
+            let sphere = Sphere::new(*radius, *transform).ok_or("the sphere has no extent")?;
+            Ok(Shape::Spheres(vec![sphere.with_flipped_normal(reverse)]))
+        }
+        ShapeKind::Quadric { surface, phi_max } => {
+            let quadric = Quadric::new(kind_of(surface), phi_max.to_radians(), *transform);
+            let quadric = quadric.ok_or("the shape has no extent")?;
+            Ok(Shape::Quadrics(vec![quadric.with_flipped_normal(reverse)]))
+        }
+    }
+}
+
+fn kind_of(surface: &QuadricDesc) -> QuadricKind {
+    match *surface {
+        QuadricDesc::Sphere { radius, z } => QuadricKind::Sphere { radius, z },
+        QuadricDesc::Cylinder { radius, z } => QuadricKind::Cylinder { radius, z },
+        QuadricDesc::Disk {
+            height,
+            radius,
+            inner_radius,
+        } => QuadricKind::Disk {
+            height,
+            radius,
+            inner_radius,
+        },
+    }
 }
 
 /// The motion that a description means.
@@ -41,29 +74,73 @@ pub(super) fn animated(motion: &MotionDesc) -> Result<AnimatedTransform, String>
     })
 }
 
-fn mesh_in_space(
-    mesh: &MeshDesc,
-    transform: &DAffine3,
-    reverse_orientation: bool,
-) -> Result<TriangleMesh, crate::geometry::MeshError> {
+fn mesh_in_space(mesh: &MeshDesc, transform: &DAffine3, reverse_orientation: bool) -> Result<TriangleMesh, String> {
     let place = |positions: &[Vec3]| positions.iter().map(|&p| transform_point(transform, p)).collect();
     let mut steps = vec![place(&mesh.positions)];
     steps.extend(mesh.positions_end.as_deref().map(place));
-    // The cross product of transformed edges changes sides where the transform mirrors; a normal does not.
-    let mirrors = transform.matrix3.determinant() < 0.0;
-    let mut result = TriangleMesh::new(steps, mesh.indices.clone())?.with_flipped_normal(reverse_orientation ^ mirrors);
+    let flip = reverse_orientation ^ mirrors(transform);
+    let mut result = TriangleMesh::new(steps, mesh.indices.clone())
+        .map_err(|e| e.to_string())?
+        .with_flipped_normal(flip);
     if !mesh.normals.is_empty() {
-        let normal_matrix = transform.matrix3.inverse().transpose();
-        let sign = if reverse_orientation { -1.0 } else { 1.0 };
-        let normals = mesh.normals.iter().map(|n| {
-            (normal_matrix * n.as_dvec3())
-                .try_normalize()
-                .map_or(Vec3::ZERO, |n| (sign * n).as_vec3())
-        });
-        result = result.with_normals(normals.collect())?;
+        let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
+        result = result.with_normals(normals).map_err(|e| e.to_string())?;
     }
     if !mesh.uvs.is_empty() {
-        result = result.with_uvs(mesh.uvs.clone())?;
+        result = result.with_uvs(mesh.uvs.clone()).map_err(|e| e.to_string())?;
     }
     Ok(result)
+}
+
+/// Bilinear patches; as triangles, which are traced faster, if all are parallelograms and nothing but their points is given: then two
+/// triangles are the same surface with the same texture coordinates.
+fn patches_in_space(mesh: &PatchMeshDesc, transform: &DAffine3, reverse_orientation: bool) -> Result<Shape, String> {
+    let positions = mesh.positions.iter().map(|&p| transform_point(transform, p)).collect();
+    let flip = reverse_orientation ^ mirrors(transform);
+    let mut result = PatchMesh::new(positions, mesh.indices.clone())
+        .map_err(|e| e.to_string())?
+        .with_flipped_normal(flip);
+    if !mesh.normals.is_empty() {
+        let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
+        result = result.with_normals(normals).map_err(|e| e.to_string())?;
+    }
+    if !mesh.uvs.is_empty() {
+        result = result.with_uvs(mesh.uvs.clone()).map_err(|e| e.to_string())?;
+    }
+    let is_plain = mesh.normals.is_empty() && mesh.uvs.is_empty();
+    if is_plain && (0..result.patch_count()).all(|i| result.patch(i).is_parallelogram()) {
+        return parallelograms(&result, flip).map(Shape::Mesh);
+    }
+    Ok(Shape::Patches(result))
+}
+
+fn parallelograms(patches: &PatchMesh, flip: bool) -> Result<TriangleMesh, String> {
+    let mut positions = Vec::with_capacity(4 * patches.patch_count());
+    let mut uvs = Vec::with_capacity(positions.capacity());
+    let mut indices = Vec::with_capacity(2 * patches.patch_count());
+    for i in 0..patches.patch_count() {
+        let first = positions.len() as u32;
+        let [p00, p10, p01, p11] = patches.patch(i).corners.map(DVec3::as_vec3);
+        positions.extend([p00, p10, p11, p01]);
+        uvs.extend([Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]);
+        indices.extend([[0, 1, 2], [0, 2, 3]].map(|triangle: [u32; 3]| triangle.map(|v| first + v)));
+    }
+    let mesh = TriangleMesh::new(vec![positions], indices).and_then(|mesh| mesh.with_uvs(uvs));
+    Ok(mesh.map_err(|e| e.to_string())?.with_flipped_normal(flip))
+}
+
+/// The cross product of transformed edges changes sides where the transform mirrors; a normal does not.
+fn mirrors(transform: &DAffine3) -> bool {
+    transform.matrix3.determinant() < 0.0
+}
+
+fn normals_in_space(normals: &[Vec3], transform: &DAffine3, reverse_orientation: bool) -> Vec<Vec3> {
+    let normal_matrix = transform.matrix3.inverse().transpose();
+    let sign = if reverse_orientation { -1.0 } else { 1.0 };
+    let placed = |n: &Vec3| {
+        (normal_matrix * n.as_dvec3())
+            .try_normalize()
+            .map_or(Vec3::ZERO, |n| (sign * n).as_vec3())
+    };
+    normals.iter().map(placed).collect()
 }

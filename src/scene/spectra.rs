@@ -15,9 +15,15 @@ impl SpectrumCompiler {
         spectrum(&desc.value, Spectrum::rgb_albedo, Outside::Constant).compile(self.mode, SpectrumRole::Reflectance)
     }
 
-    /// The real or imaginary part of a metal's index: in rgb mode each channel has its own, as seen under the white.
-    pub fn metal_index(self, desc: &SpectrumDesc) -> CompiledSpectrum {
+    /// The real or imaginary part of a metal's index, or a coefficient of a medium: in rgb mode each channel has its own, as seen under
+    /// the white.
+    pub fn unbounded(self, desc: &SpectrumDesc) -> CompiledSpectrum {
         spectrum(&desc.value, Spectrum::rgb_unbounded, Outside::Constant).compile(self.mode, SpectrumRole::Reflectance)
+    }
+
+    /// A coefficient of absorption that is known as linear sRGB.
+    pub fn absorption_of_rgb(self, rgb: [f32; 3]) -> CompiledSpectrum {
+        Spectrum::rgb_unbounded(rgb).compile(self.mode, SpectrumRole::Reflectance)
     }
 
     /// The index of refraction of a dielectric.

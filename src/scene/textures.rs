@@ -89,7 +89,7 @@ impl<'a> TextureCompiler<'a> {
     fn compile(&self, desc: &SpectrumDesc, usage: SpectrumUse) -> CompiledSpectrum {
         match usage {
             SpectrumUse::Albedo => self.spectra.albedo(&at_most_one(desc)),
-            SpectrumUse::Unbounded => self.spectra.metal_index(desc),
+            SpectrumUse::Unbounded => self.spectra.unbounded(desc),
         }
     }
 

@@ -4,10 +4,13 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use super::shapes::animated;
-use crate::camera::{Camera, CameraSpec, Projection, RasterDomain};
-use crate::desc::{CameraKind, FilmDesc, SceneDesc, SensorDesc, ViewDesc};
+use super::{Scene, media};
+use crate::camera::{Camera, CameraSpec, Projection, RasterDomain, Realistic, RealisticSpec};
+use crate::desc::{CameraKind, FilmDesc, FilmKind, GBufferSpace, MeasureDesc, SceneDesc, SensorDesc, ViewDesc};
 use crate::error::{Error, Result, Severity};
 use crate::film::{Film, PixelFilter, PixelRect, Sensor, SensorSpec};
+use crate::math::{DAffine3, Vec3};
+use crate::medium::MediumId;
 use crate::sampling::{Sampler, SamplerKind};
 use crate::spectrum::{ColorMode, ColorSpace, Outside, SampledSpectrum, Spectrum, Wavelengths, sensor_curves};
 
@@ -18,6 +21,8 @@ pub struct View {
     pub name: String,
     /// Where from.
     pub camera: Camera,
+    /// What the camera stands in; `None` is the vacuum.
+    pub medium: Option<MediumId>,
     /// Pixels of the whole picture.
     pub resolution: [u32; 2],
     /// The pixels that are rendered.
@@ -34,6 +39,8 @@ pub struct View {
     pub samples: Range<u32>,
     /// The output that the scene names.
     pub filename: Option<PathBuf>,
+    /// What the film keeps beside colours.
+    pub film_kind: FilmKind,
 }
 
 /// What a command line changes of a view.
@@ -84,7 +91,8 @@ impl View {
         }
         Ok(Self {
             name: view.name.clone(),
-            camera: Camera::new(&camera_spec(desc, view, resolution).map_err(problem)?),
+            camera: camera(desc, view, resolution).map_err(problem)?,
+            medium: view.camera.medium.map(media::id),
             resolution,
             crop,
             filter,
@@ -93,6 +101,7 @@ impl View {
             sampler: Sampler::new(kind, overrides.seed, spp),
             samples: overrides.sample.map_or(0..spp, |sample| sample..sample + 1),
             filename: view.film.filename.clone(),
+            film_kind: view.film.kind,
         })
     }
 
@@ -118,6 +127,22 @@ impl View {
     pub fn film(&self) -> Film {
         Film::new(self.resolution, self.crop)
     }
+
+    /// `film`, one for this view, with what it is to keep of `scene` beside colours.
+    pub fn with_layers(&self, film: Film, scene: &Scene) -> Film {
+        let corners = scene.bounds().corners().map(Vec3::as_dvec3);
+        let at = |time: f32| match self.film_kind {
+            FilmKind::GBuffer(GBufferSpace::Camera) => self.camera.camera_from_world(time),
+            _ => DAffine3::IDENTITY,
+        };
+        // Twice as far as at some times, for what moves in between.
+        let reach = [0.0, 0.25, 0.5, 0.75, 1.0]
+            .map(at)
+            .iter()
+            .flat_map(|transform| corners.map(|corner| 2.0 * transform.transform_point3(corner).abs().max_element()))
+            .fold(0.0, f64::max);
+        film.of_kind(self.film_kind, reach)
+    }
 }
 
 fn sensor_spec(film: &FilmDesc) -> SensorSpec {
@@ -138,21 +163,39 @@ fn sensor_spec(film: &FilmDesc) -> SensorSpec {
     }
 }
 
-fn camera_spec(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<CameraSpec, String> {
+/// The camera of a view, or what is wrong with it.
+fn camera(desc: &SceneDesc, view: &ViewDesc, resolution: [u32; 2]) -> Result<Camera, String> {
     let camera = &view.camera;
     let [start, end] = desc.transform_times;
-    Ok(CameraSpec {
-        projection: match camera.kind {
-            CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
-            CameraKind::Orthographic => Projection::Orthographic,
-        },
+    let shutter = camera.shutter.map(|time| (time - start) / (end - start));
+    let world_from_camera = animated(&camera.world_from_camera())?;
+    let projection = match &camera.kind {
+        &CameraKind::Perspective { fov, near_clip } => Projection::Perspective { fov, near_clip },
+        CameraKind::Orthographic => Projection::Orthographic,
+        CameraKind::Spherical(_) | CameraKind::Realistic(_) if view.film.measure == MeasureDesc::Irradiance => {
+            return Err("only a camera with a flat screen measures irradiance".to_owned());
+        }
+        CameraKind::Spherical(map) => {
+            return Ok(Camera::spherical(*map, resolution, shutter, &world_from_camera));
+        }
+        CameraKind::Realistic(lenses) => {
+            let spec = RealisticSpec {
+                desc: lenses,
+                film_diagonal: view.film.diagonal * 1e-3,
+                resolution,
+            };
+            return Ok(Camera::realistic(Realistic::new(&spec)?, shutter, &world_from_camera));
+        }
+    };
+    Ok(Camera::new(&CameraSpec {
+        projection,
         screen_window: camera.screen_window(resolution),
         resolution,
         lens_radius: camera.lens_radius,
         focal_distance: camera.focal_distance,
         aperture: camera.aperture,
         measure: view.film.measure,
-        shutter: camera.shutter.map(|time| (time - start) / (end - start)),
-        world_from_camera: animated(&camera.world_from_camera)?,
-    })
+        shutter,
+        world_from_camera,
+    }))
 }

@@ -217,6 +217,8 @@ fn a_filter_is_asked_about_filtered_geometry_only() {
             Shape::Mesh(worlds::soup(rng, 50, 0.3)),
         ]),
         filtered(vec![worlds::spheres(rng, 50), worlds::spheres(rng, 10)]),
+        filtered(vec![worlds::quadrics(rng, 60), worlds::patches(rng, 20)]),
+        filtered(vec![worlds::patches(rng, 60), worlds::quadrics(rng, 10)]),
     ];
     for (seed, world) in worlds.iter().enumerate() {
         let opaque = |hit: GeometryId| world.geometry(hit).opacity == Opacity::Opaque;

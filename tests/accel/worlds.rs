@@ -1,8 +1,11 @@
 //! Worlds to trace: each a name and a world of at most a thousand primitives.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use lucerna::geometry::{Geometry, Group, Instance, Shape, Sphere, TriangleMesh, World, WorldBuilder};
+use lucerna::geometry::{
+    Geometry, Group, Instance, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh, World, WorldBuilder,
+};
 use lucerna::math::{AnimatedTransform, DAffine3, DQuat, DVec3, Vec3};
 
 use crate::rng::Rng;
@@ -182,6 +185,53 @@ pub fn spheres(rng: &mut Rng, count: usize) -> Shape {
     Shape::Spheres((0..count).map(sphere).collect())
 }
 
+/// Parts of spheres, cylinders and disks of all proportions in a cube.
+pub fn quadrics(rng: &mut Rng, count: usize) -> Shape {
+    let quadric = |i: usize| {
+        let [a, b] = [rng.range(-1.0, 0.8), rng.range(-0.6, 1.0)].map(f64::from);
+        let z = if a < b { [a, b] } else { [b, a] };
+        let inner_radius = f64::from(rng.unit()) * 0.9;
+        let kind = match i % 3 {
+            0 => QuadricKind::Sphere { radius: 1.0, z },
+            1 => QuadricKind::Cylinder {
+                radius: inner_radius + 0.05,
+                z,
+            },
+            _ => QuadricKind::Disk {
+                height: a,
+                radius: 1.0,
+                inner_radius,
+            },
+        };
+        let phi_max = if rng.below(2) == 0 {
+            TAU
+        } else {
+            TAU * f64::from(rng.range(0.1, 1.0))
+        };
+        let scale = f64::from(rng.range(0.05, 0.3));
+        Quadric::new(kind, phi_max, place(rng, scale, 1.0)).unwrap()
+    };
+    Shape::Quadrics((0..count).map(quadric).collect())
+}
+
+/// Bilinear patches in a cube: twisted, flat, with two corners in one place, and a flat one along the axes.
+pub fn patches(rng: &mut Rng, count: usize) -> Shape {
+    let mut positions = Vec::new();
+    for i in 0..count {
+        let center = rng.cube();
+        let mut corners: [Vec3; 4] = std::array::from_fn(|_| center + 0.3 * rng.cube());
+        match i % 4 {
+            0 => corners[3] = corners[1] + 0.7 * (corners[2] - corners[0]),
+            1 => corners[1] = corners[0],
+            2 => corners = corners.map(|p| Vec3::new(p.x, p.y, center.z)),
+            _ => {}
+        }
+        positions.extend(corners);
+    }
+    let indices = (0..count as u32).map(|i| [0, 1, 2, 3].map(|k| 4 * i + k)).collect();
+    Shape::Patches(PatchMesh::new(positions, indices).unwrap())
+}
+
 /// Many of the same triangle, triangles without area, and triangles that share planes and edges.
 fn degenerate(rng: &mut Rng) -> TriangleMesh {
     let mut positions: Vec<Vec3> = (0..60).map(|_| rng.cube()).collect();
@@ -241,6 +291,22 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
             of_shapes(vec![Shape::Spheres(vec![
                 Sphere::at(DVec3::new(1e5 + 1.0, 0.0, 0.0), 1e5).unwrap(),
             ])]),
+        ),
+        ("quadrics", of_shapes(vec![quadrics(rng, 60)])),
+        ("patches", of_shapes(vec![patches(rng, 80)])),
+        (
+            "instances of quadrics and patches",
+            instanced(
+                vec![quadrics(rng, 6), patches(rng, 8)],
+                (0..10).map(|_| fixed(place(rng, 0.3, 1.0))).collect::<Vec<_>>(),
+            ),
+        ),
+        (
+            "moving instances of quadrics and patches",
+            instanced(
+                vec![quadrics(rng, 6), patches(rng, 8), Shape::Mesh(soup(rng, 20, 0.5))],
+                (0..8).map(|_| motion(rng)).collect::<Vec<_>>(),
+            ),
         ),
         (
             "instances",

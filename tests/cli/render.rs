@@ -150,3 +150,51 @@ fn strategies_are_layers_of_one_file_and_an_overview() {
     let overview = read(&sandbox.path("out/of/ball-strategies.png")).expect("a picture");
     assert_eq!([overview.width(), overview.height()], [3 * 27 + 3, 5 * 19 + 3]);
 }
+
+/// A film that keeps more than colours writes it to EXR files, and says so where it cannot.
+#[test]
+fn films_write_their_layers() {
+    let sandbox = Sandbox::new();
+    for film in ["gbuffer", "spectral"] {
+        sandbox.write(
+            &format!("{film}.pbrt"),
+            &SCENE.replace("Film \"rgb\"", &format!("Film \"{film}\"")),
+        );
+        sandbox
+            .lucerna(&["render", &format!("{film}.pbrt"), "-o", &format!("{film}.exr")])
+            .expect(0);
+    }
+    // The names of channels are in the header, in alphabetical order.
+    let header = |name: &str| {
+        let bytes = std::fs::read(sandbox.path(name)).expect("a picture");
+        String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).into_owned()
+    };
+    let gbuffer = header("gbuffer.exr");
+    for name in ["Albedo.R\0", "Ns.Z\0", "P.X\0", "RelativeVariance.B\0", "dzdx\0", "u\0"] {
+        assert!(gbuffer.contains(name), "{name}: {gbuffer:?}");
+    }
+    let spectral = header("spectral.exr");
+    for name in [
+        "S0.374,688nm\0",
+        "S0.815,312nm\0",
+        "spectralLayoutVersion\0",
+        "emissiveUnits\0",
+    ] {
+        assert!(spectral.contains(name), "{name}: {spectral:?}");
+    }
+    // Readers find the colours first.
+    let (image, metadata) = read_exr(&sandbox.path("spectral.exr")).expect("a picture");
+    assert_eq!(image.channels(), ["R", "G", "B"]);
+    assert!(metadata.is_some_and(|m| m.is_spectral));
+    sandbox
+        .lucerna(&["render", "gbuffer.pbrt", "-o", "colors.png"])
+        .expect(0)
+        .says("other layers need a file .exr");
+    for (options, problem) in [
+        (["--integrator", "bdpt"], "by its colors only"),
+        (["--color", "rgb"], "no wavelengths"),
+    ] {
+        let arguments = ["render", "spectral.pbrt", options[0], options[1]];
+        sandbox.lucerna(&arguments).expect(2).says(problem);
+    }
+}

@@ -12,8 +12,11 @@ mod emission;
 mod enclosures;
 mod interfaces;
 mod irradiance;
+mod layers;
 mod lights;
+mod media;
 mod motion;
+mod shapes;
 mod wavelengths;
 
 use common::effort;

@@ -176,7 +176,7 @@ fn a_mesh_file_is_read_once_and_shared() {
     ]);
     let mesh = |i: usize| match &scene.shapes[i].kind {
         ShapeKind::TriangleMesh(mesh) => mesh,
-        ShapeKind::Sphere { .. } => panic!("a sphere"),
+        other => panic!("{other:?}"),
     };
     assert!(std::sync::Arc::ptr_eq(mesh(0), mesh(1)));
     assert_eq!(mesh(2).positions, mesh(0).positions);

@@ -215,6 +215,7 @@ fn chromaticities_of_images_are_looked_at() {
             render_seconds: 0.0,
             scene_hash: String::new(),
             chromaticities,
+            is_spectral: false,
         };
         let path = directory.path().join(name);
         let written = PendingOutput::create(&path).and_then(|output| output.commit(&image, Some(&metadata), 0.0));

@@ -2,14 +2,20 @@
 
 mod bad_input;
 mod files;
+mod lenses;
 mod lights;
 mod materials;
+mod media;
 mod mitsuba;
 mod mutations;
+mod obj;
 mod options;
 mod ply;
+mod shapes;
 mod tables;
+mod v3;
 mod world;
+mod written;
 
 use std::path::{Path, PathBuf};
 

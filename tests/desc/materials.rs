@@ -2,7 +2,7 @@
 
 use lucerna::desc::{DistributionDesc, MATERIALS, MaterialId, MaterialKind, Parameter, ParameterKind, Textured};
 
-use crate::{errors, scene};
+use crate::{errors, scene, world};
 
 /// A material that has what it needs and besides `parameters`.
 fn text(material: &str, parameters: &str) -> String {
@@ -71,6 +71,34 @@ fn wrong(parameter: &Parameter) -> Vec<(String, String)> {
         cases.push(case("texture", "\"t\"", "there is no float texture `t`"));
     }
     cases
+}
+
+#[test]
+fn hair_is_colored_by_the_first_that_is_given() {
+    use lucerna::desc::HairColorDesc;
+    let of = |text: &str| {
+        let scene = world(&format!("Material \"hair\" {text} Shape \"sphere\""));
+        let MaterialKind::Hair(hair) = scene.materials[scene.shapes[0].material.0 as usize].kind.clone() else {
+            panic!("hair")
+        };
+        (hair, scene.warnings.len())
+    };
+    let pigments = |color: &HairColorDesc| match color {
+        HairColorDesc::Pigments {
+            eumelanin: Textured::Value(brown),
+            pheomelanin: Textured::Value(red),
+        } => Some([*brown, *red]),
+        _ => None,
+    };
+    let (hair, warnings) = of("");
+    assert_eq!((pigments(&hair.color), hair.eta, warnings), (Some([1.3, 0.0]), 1.55, 0));
+    let (hair, warnings) = of("\"float pheomelanin\" .5 \"float beta_m\" .2 \"float alpha\" 3");
+    assert_eq!((pigments(&hair.color), warnings), (Some([0.0, 0.5]), 0));
+    assert_eq!((hair.beta_m, hair.beta_n), (Textured::Value(0.2), Textured::Value(0.3)));
+    let (hair, warnings) = of("\"float eumelanin\" 1 \"rgb color\" [.3 .2 .1]");
+    assert!(matches!(hair.color, HairColorDesc::Reflectance(_)) && warnings == 1);
+    let (hair, warnings) = of("\"rgb sigma_a\" [3 2 1] \"rgb color\" [.3 .2 .1] \"float eumelanin\" 1");
+    assert!(matches!(hair.color, HairColorDesc::Absorption(_)) && warnings == 2);
 }
 
 #[test]

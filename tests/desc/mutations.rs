@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lucerna::desc::{ParseOptions, pbrt, ply};
+use lucerna::desc::{ParseOptions, obj, pbrt, ply};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub(super) struct Random(pub u64);
@@ -71,7 +71,7 @@ pub(super) fn mutate(original: &[u8], start: usize, random: &mut Random) -> Vec<
     bytes
 }
 
-const SCENES: [&str; 3] = [
+const SCENES: [&str; 5] = [
     r#"LookAt 0 0 5 0 0 0 0 1 0 # view
 Camera "perspective" "float fov" [ 45 ] "float lensradius" .1 "string name" "a b"
 Film "rgb" "integer xresolution" 64 "integer yresolution" [ 48 ] "float cropwindow" [ 0 .5 0 1 ] "string filename" "x\"y.exr"
@@ -92,6 +92,18 @@ NamedMaterial "glass" Attribute "shape" "float radius" 3 Shape "sphere""#,
 TransformTimes 0 2 ColorSpace "srgb" Option "seed" 3 WorldBegin CoordinateSystem "here"
 ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 -1 6.8 1 ] ReverseOrientation CoordSysTransform "here"
 MediumInterface "" "" Material "diffuse" "rgb reflectance" [ .5 .5 .5 ] Shape "sphere""#,
+    r#"Camera "spherical" "string mapping" "equirectangular" Film "spectral" "integer nbuckets" 4 "float lambdamin" 400
+Integrator "simplepath" "bool samplelights" false Option "disablepixeljitter" false WorldBegin
+Material "hair" "float eumelanin" .3 "float beta_m" .2 Shape "sphere" Material "hair" "rgb color" [ .3 .2 .1 ]"#,
+    r#"Film "image" "float scale" 2 Camera "environment" Sampler "02sequence" PixelFilter "gaussian" "float alpha" 2
+Integrator "directlighting" "string lightsamplestrategy" "spatial" WorldBegin
+Texture "t" "color" "scale" "rgb tex1" [ .5 .5 .5 ] "rgb tex2" [ 1 .5 .5 ]
+MakeNamedMaterial "a" "string type" "plastic" "texture Kd" "t" "float roughness" .1 MakeNamedMaterial "b" "string type" "glass"
+Material "mix" "string namedmaterial1" "a" "string namedmaterial2" "b" "rgb amount" [ .2 .2 .2 ]
+Shape "trianglemesh" "point P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 1 2 ] "float st" [ 0 0 1 0 0 1 ]
+Material "uber" "rgb Kr" [ 0 0 0 ] Material "translucent" "rgb reflect" [ .2 .2 .2 ]
+LightSource "point" "rgb I" [ 1 2 3 ] "rgb scale" [ 2 1 1 ] AreaLightSource "area" "blackbody L" [ 5000 2 ] "bool twosided" "true"
+WorldEnd"#,
 ];
 
 #[test]
@@ -114,7 +126,7 @@ fn no_text_makes_the_reader_panic() {
         }
     }
     // Most mutations break something, and not all do: else this would test little.
-    assert!((3000..11_500).contains(&refused), "{refused} refused");
+    assert!((3000..11_700).contains(&refused), "{refused} refused");
 }
 
 #[test]
@@ -162,6 +174,33 @@ fn no_bytes_make_the_mesh_reader_panic() {
             .map_or(0, |i| i + 11);
         let start = if round % 2 == 0 { header } else { 0 };
         refused += usize::from(ply::parse(&mutate(file, start, &mut random)).is_err());
+    }
+    assert!((3000..11_500).contains(&refused), "{refused} refused");
+}
+
+#[test]
+fn no_text_makes_the_obj_reader_panic() {
+    let file = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0 1\nv 0 1 \\\n 0\nvt 0 1\nvn 0 0 1\nusemtl x\nf 1/1/1 2//1 -1/-1\nusemtl y\nf 1 2 3 1\n";
+    let parse = |bytes: &[u8]| obj::parse(bytes, Path::new("mesh.obj"));
+    assert!(parse(file).is_ok());
+    let mut random = Random(3);
+    let mut refused = 0;
+    for _ in 0..12_000 {
+        match parse(&mutate(file, 0, &mut random)) {
+            Ok(file) => {
+                file.warnings.iter().for_each(|w| drop(w.to_string()));
+                let triangles = file.mesh.indices.len();
+                let meshes = file.into_meshes();
+                assert_eq!(
+                    meshes.iter().map(|(_, mesh)| mesh.indices.len()).sum::<usize>(),
+                    triangles
+                );
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
     }
     assert!((3000..11_500).contains(&refused), "{refused} refused");
 }

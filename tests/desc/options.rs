@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilterKind, Heuristic, IntegratorDesc,
-    IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect, SAMPLERS, SamplerKind,
-    SensorDesc, SpectrumValue, Strategy, Termination,
+    ApertureDesc, CameraKind, ColorSpace, CropDesc, Distribution, FilmKind, FilterKind, GBufferSpace, Heuristic,
+    IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, MeasureDesc, MotionDesc, PathDesc, PixelRect,
+    SAMPLERS, SamplerKind, SensorDesc, SpectralBins, SpectrumValue, Strategy, Termination,
 };
 use lucerna::sampling::Strata;
 
@@ -26,7 +26,7 @@ fn defaults_are_those_of_pbrt() {
     assert_eq!(view.camera.lens_radius, 0.0);
     assert_eq!(view.camera.focal_distance, 1e6);
     assert_eq!(view.camera.shutter, [0.0, 1.0]);
-    assert_eq!(view.camera.world_from_camera, MotionDesc::IDENTITY);
+    assert_eq!(view.camera.world_from_camera(), MotionDesc::IDENTITY);
     assert_eq!(view.film.resolution, [1280, 720]);
     assert_eq!(view.film.crop, CropDesc::Full);
     assert_eq!(view.film.filename, None);
@@ -188,7 +188,7 @@ fn repeated_cameras_are_views_that_share_the_rest() {
     );
     let names: Vec<&str> = scene.views.iter().map(|v| v.name.as_str()).collect();
     assert_eq!(names, ["camera1", "side", "camera3"]);
-    let eye = |i: usize| scene.views[i].camera.world_from_camera.start.translation;
+    let eye = |i: usize| scene.views[i].camera.world_from_camera().start.translation;
     assert_eq!(eye(0), DVec3::new(0.0, 0.0, -5.0));
     assert_eq!(eye(1), DVec3::ZERO);
     assert!(scene.views.iter().all(|v| v.film.resolution == [10, 720]));
@@ -201,7 +201,7 @@ fn the_camera_is_where_look_at_puts_it() {
     let scene = scene(
         "LookAt 1 2 3  4 2 3  0 1 0 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\" Shape \"sphere\"",
     );
-    let world_from_camera = scene.views[0].camera.world_from_camera;
+    let world_from_camera = scene.views[0].camera.world_from_camera();
     assert!(world_from_camera.is_static());
     let at = |p| world_from_camera.start.transform_vector3(p);
     // It looks along +x with y up; pbrt's camera space is left-handed, so right is up x forward, towards -z.
@@ -217,7 +217,7 @@ fn a_camera_may_move() {
         "ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Scale 2 2 2
          Camera \"perspective\" WorldBegin",
     );
-    let motion = scene.views[0].camera.world_from_camera;
+    let motion = scene.views[0].camera.world_from_camera();
     assert!(!motion.is_static());
     // The inverse of a translation after a scale by 2.
     let half = |x, y| {
@@ -237,16 +237,65 @@ fn what_cannot_change_the_image_is_a_warning() {
         Integrator "volpath"
         Option "seed" 7
         Option "disable-pixel-jitter" false
-        Integrator "path"
+        Integrator "path" "bool regularize" true
         WorldBegin
         Attribute "shape" "float alhpa" 1
         Shape "sphere"
         "#,
     );
     let lines: Vec<usize> = scene.warnings.iter().map(|w| w.line).collect();
-    assert_eq!(lines, [2, 3, 3, 4, 4, 5, 6, 8, 10]);
+    assert_eq!(lines, [2, 3, 4, 4, 5, 6, 8, 8, 10]);
     assert!(scene.warnings[0].message.contains("--backend"));
     assert_eq!(scene.views[0].sampler.kind, SamplerKind::Halton);
+}
+
+#[test]
+fn each_integrator_of_pbrt_has_one_that_stands_for_it() {
+    let path = IntegratorKind::Path(PathDesc::default());
+    let blind = IntegratorKind::Path(PathDesc {
+        strategy: Strategy::Bsdf,
+        ..PathDesc::default()
+    });
+    let mlt = "\"mlt\" \"integer chains\" 10 \"integer bootstrapsamples\" 10 \"integer mutationsperpixel\" 3 \"float sigma\" .1
+        \"float largestepprobability\" .3 \"integer maxdepth\" 7";
+    let cases = [
+        ("\"volpath\" \"integer maxdepth\" 7", path, 1),
+        ("\"simplevolpath\" \"integer maxdepth\" 7", path, 1),
+        (
+            "\"simplepath\" \"integer maxdepth\" 7 \"bool samplebsdf\" false",
+            path,
+            1,
+        ),
+        (
+            "\"simplepath\" \"bool samplelights\" false \"integer maxdepth\" 7",
+            blind,
+            1,
+        ),
+        ("\"randomwalk\" \"integer maxdepth\" 7", blind, 1),
+        (mlt, IntegratorKind::Bdpt(Heuristic::Power), 6),
+    ];
+    for (text, kind, warnings) in cases {
+        let scene = scene(&format!("Integrator {text} WorldBegin"));
+        assert_eq!(
+            (scene.integrator.kind, scene.integrator.max_depth),
+            (kind, Some(7)),
+            "{text}"
+        );
+        assert_eq!(scene.warnings.len(), warnings, "{text}");
+    }
+}
+
+#[test]
+fn films_keep_what_they_are_asked_for() {
+    let of = |text: &str| scene(&format!("Film {text} WorldBegin")).views[0].film.kind;
+    assert_eq!(of("\"rgb\""), FilmKind::Rgb);
+    assert_eq!(of("\"gbuffer\""), FilmKind::GBuffer(GBufferSpace::Camera));
+    let world = of("\"gbuffer\" \"string coordinatesystem\" \"world\" \"float iso\" 200");
+    assert_eq!(world, FilmKind::GBuffer(GBufferSpace::World));
+    let bins = |range, count| FilmKind::Spectral(SpectralBins { range, count });
+    assert_eq!(of("\"spectral\""), bins([360.0, 830.0], 16));
+    let some = of("\"spectral\" \"integer nbuckets\" 3 \"float lambdamin\" 400 \"float lambdamax\" 700");
+    assert_eq!(some, bins([400.0, 700.0], 3));
 }
 
 #[test]

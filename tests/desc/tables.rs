@@ -2,8 +2,8 @@
 //! itself checks, in builds with debug assertions, that it asks for nothing that a table lacks: each kind is read here.)
 
 use lucerna::desc::{
-    Entry, INTEGRATORS, LIGHTS, MATERIALS, Parameter, ParameterDefault, ParameterKind, SAMPLERS, SceneDesc, TEXTURES,
-    TextureClass,
+    Entry, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS, SceneDesc,
+    TEXTURES, TextureClass,
 };
 use lucerna::error::Error;
 use tempfile::TempDir;
@@ -35,7 +35,7 @@ struct Case {
 }
 
 fn cases() -> Vec<Case> {
-    let tables: [&'static [Entry]; 5] = [&MATERIALS, &LIGHTS, &TEXTURES, &SAMPLERS, &INTEGRATORS];
+    let tables: [&'static [Entry]; 6] = [&MATERIALS, &MEDIA, &LIGHTS, &TEXTURES, &SAMPLERS, &INTEGRATORS];
     let entries = tables.into_iter().flatten();
     let of_entry = |entry: &'static Entry| match entry.classes {
         [] => vec![Case { entry, class: None }],
@@ -70,6 +70,9 @@ impl Case {
         let needed = if is_given(&needed) { "" } else { &needed };
         let used = match self.class {
             Some(class) => format!("Texture \"used\" \"{}\" \"{name}\" {needed} {parameters}", class.name()),
+            None if directive == "MakeNamedMedium" => {
+                format!("{directive} \"m\" \"string type\" \"{name}\" {parameters}")
+            }
             None => format!("{directive} \"{name}\" {needed} {parameters}"),
         };
         let world = "WorldBegin Texture \"t\" \"float\" \"constant\" Texture \"t\" \"spectrum\" \"constant\"

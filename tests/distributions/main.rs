@@ -9,12 +9,15 @@ mod cameras;
 mod energy;
 mod environments;
 mod furnace;
+mod hair;
 mod kinds;
 mod light_emission;
 mod light_samplers;
 mod lights;
 mod measured;
 mod narrow;
+mod shapes;
+mod spherical;
 mod textured;
 
 use glam::Vec2;

@@ -37,6 +37,7 @@ fn metadata() -> ImageMetadata {
         render_seconds: 12.345_678_9,
         scene_hash: "00ff".repeat(16),
         chromaticities: [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]],
+        is_spectral: true,
     }
 }
 

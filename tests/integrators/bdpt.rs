@@ -195,3 +195,37 @@ fn a_limit_above_all_samples_takes_nothing_from_light_paths() {
         assert!(mean(&low) < 0.9 * mean(&unlimited), "{name}");
     }
 }
+
+/// A spherical camera takes light paths as it takes camera rays, at the edges of its map too, which one direction meets twice.
+#[test]
+fn spherical_cameras_take_light_paths() {
+    for mapping in ["equalarea", "equirectangular"] {
+        let scene = |integrator: &str| {
+            let width = if mapping == "equalarea" { 16 } else { 32 };
+            format!(
+                r#"Translate 0.2 -1 0.3 Rotate 30 1 1 0
+                Camera "spherical" "string mapping" "{mapping}"
+                Film "rgb" "integer xresolution" {width} "integer yresolution" 16
+                PixelFilter "triangle" "float xradius" 2 "float yradius" 2
+                Integrator "{integrator}" "integer maxdepth" 4
+                WorldBegin
+                {PANEL}
+                Material "diffuse" "rgb reflectance" [0.6 0.6 0.5]
+                Shape "trianglemesh" "integer indices" [0 1 2 0 2 3  4 6 5 4 7 6  0 3 7 0 7 4  1 5 6 1 6 2  3 2 6 3 6 7]
+                    "point3 P" [-1.5 0 -1.5  1.5 0 -1.5  1.5 0 1.5  -1.5 0 1.5  -1.5 2 -1.5  1.5 2 -1.5  1.5 2 1.5  -1.5 2 1.5]
+                LightSource "infinite" "rgb L" [.2 .2 .4]"#
+            )
+        };
+        let runs = |integrator: &str, spp| {
+            let built = Built::new(parse(&scene(integrator)), Backend::default(), ColorMode::Rgb);
+            built.runs(spp, [4, 4])
+        };
+        let reference = runs("path", 256);
+        for (integrator, spp) in [("bdpt", 64), ("lightpath", 256)] {
+            let report = Means::default().against_runs(&runs(integrator, spp), &reference);
+            println!("{mapping}, {integrator}: {report}");
+            report.assert_agrees(&format!("{mapping}, {integrator}"));
+            report.assert_power(integrator, f64::INFINITY, 0.02);
+        }
+    }
+}

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use lucerna::sampling::{PiecewiseConstant1D, SolidAnglePdf, warp};
 
 /// How many chi-squared tests of warps there are here.
-const WARPS: usize = 17;
+const WARPS: usize = 21;
 
 fn first_two(u: [f32; 4]) -> Vec2 {
     Vec2::new(u[0], u[1])
@@ -55,6 +55,27 @@ fn directions_have_their_density() {
         let report = sphere.run_directions(|u| Some(sample(first_two(u))), |w| pdf(w).0);
         report.assert_ok(name);
         assert!((report.mass - 1.0).abs() < 1e-5, "{name}: {}", report.mass);
+    }
+}
+
+#[test]
+fn phase_functions_have_their_density_and_mean_cosine() {
+    for g in [0.0, 0.3, 0.9, -0.6] {
+        let report = Chi2::sphere().of(WARPS).run_directions(
+            |u| Some(warp::sample_henyey_greenstein(first_two(u), g)),
+            |w| warp::henyey_greenstein_pdf(w.z, g).0,
+        );
+        report.assert_ok(&format!("Henyey-Greenstein of g {g}"));
+        assert!((report.mass - 1.0).abs() < 1e-5, "{g}: {}", report.mass);
+        // What g means, by quadrature of the density.
+        const STEPS: usize = 1 << 16;
+        let mean: f64 = (0..STEPS)
+            .map(|i| {
+                let cos = -1.0 + 2.0 * (i as f64 + 0.5) / STEPS as f64;
+                2.0 * PI * cos * f64::from(warp::henyey_greenstein_pdf(cos as f32, g).0) * 2.0 / STEPS as f64
+            })
+            .sum();
+        assert!((mean - f64::from(g)).abs() < 1e-5, "{g}: {mean}");
     }
 }
 
@@ -178,6 +199,19 @@ fn warps_invert() {
             // At the pole itself no azimuth is left.
             let expected = if u.x == 0.0 { Vec2::new(u.x, back.y) } else { u };
             assert!(apart(expected, back, true) < TOLERANCE, "{name}: {u} and {back}");
+        }
+        for g in [0.0, 0.3, -0.6] {
+            let back = warp::invert_henyey_greenstein(warp::sample_henyey_greenstein(u, g), g);
+            // Straight on and straight back there is no azimuth, and near them little.
+            let expected = if u.x < 1e-5 || u.x > 1.0 - 1e-5 {
+                Vec2::new(u.x, back.y)
+            } else {
+                u
+            };
+            assert!(
+                apart(expected, back, true) < 4.0 * TOLERANCE,
+                "phase function {g}: {u} and {back}"
+            );
         }
         for (a, b) in [(1.0, 3.0), (2.0, 0.0), (0.0, 0.5), (1.0, 1.0)] {
             let back = warp::invert_linear(warp::sample_linear(u.x, a, b), a, b);

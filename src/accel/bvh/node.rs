@@ -18,8 +18,8 @@ pub enum Child {
     Node(usize),
     /// A block of triangles of the same tree.
     Block(usize),
-    /// A sphere of the same tree.
-    Sphere(usize),
+    /// A primitive of the same tree that is no triangle.
+    Analytic(usize),
     /// An instance of the world.
     Instance(usize),
 }
@@ -36,7 +36,7 @@ impl ChildRef {
         let (tag, index) = match child {
             Child::Node(index) => (0, index),
             Child::Block(index) => (1, index),
-            Child::Sphere(index) => (2, index),
+            Child::Analytic(index) => (2, index),
             Child::Instance(index) => (3, index),
         };
         assert!(index < 1 << INDEX_BITS, "more than 2^30 nodes or leaves");
@@ -50,7 +50,7 @@ impl ChildRef {
         match self.0 >> INDEX_BITS {
             0 => Child::Node(index),
             1 => Child::Block(index),
-            2 => Child::Sphere(index),
+            2 => Child::Analytic(index),
             _ => Child::Instance(index),
         }
     }

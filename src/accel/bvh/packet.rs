@@ -164,7 +164,7 @@ impl<'a, const N: usize> Packet<'a, N> {
                         }
                     }
                     Child::Block(index) => self.block::<S, ANY>(s, &tree.blocks[index], lanes, walk.level.instance),
-                    Child::Sphere(_) | Child::Instance(_) => {
+                    Child::Analytic(_) | Child::Instance(_) => {
                         self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
                     }
                 }

@@ -2,7 +2,7 @@
 
 use super::ray::LocalRay;
 use crate::accel::{FilterHit, HitFilter};
-use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Sphere};
+use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape};
 
 /// A box that begins farther than the nearest hit by more than this, relatively, is passed over; one at the same distance never
 /// is, as the distances of a box and of what is in it are rounded differently and equal distances are decided by ids.
@@ -106,13 +106,17 @@ impl<'a> Query<'a> {
         t > self.tnear && t <= self.tfar
     }
 
-    /// Offers the hits with a sphere, the farther if the filter takes away the nearer.
+    /// Offers the hits with a primitive of an analytic shape, the farther if the filter takes away the nearer.
     #[inline(always)]
-    pub fn offer_sphere(&mut self, sphere: &Sphere, ray: &LocalRay, candidate: impl Fn(f32) -> Candidate) -> bool {
-        let Some(hits) = sphere.intersect(ray.origin.as_dvec3(), ray.direction.as_dvec3()) else {
-            return false;
-        };
-        let mut distances = [hits.enter as f32, hits.leave as f32].into_iter();
+    pub fn offer_analytic(
+        &mut self,
+        shape: &Shape,
+        primitive: usize,
+        ray: &LocalRay,
+        candidate: impl Fn(f32) -> Candidate,
+    ) -> bool {
+        let hits = shape.line_hits(primitive, ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let mut distances = hits.iter().map(|t| t as f32);
         distances.any(|t| self.contains(t) && self.offer(&candidate(t), || [0.0; 2]))
     }
 

@@ -7,7 +7,7 @@ use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::query::{Candidate, Query};
 use super::ray::LocalRay;
 use super::tree::{GroupTrees, Tree, mesh};
-use crate::geometry::{HitPacket, InstanceId, Shape};
+use crate::geometry::{HitPacket, InstanceId};
 
 use super::build::MOST_LEVELS;
 
@@ -96,9 +96,9 @@ impl<K: Kernel> Walk<'_, K> {
                     let corners = block.corners(fraction, &mut corners);
                     self.block::<_, ANY>(block, corners, ray, query)
                 }
-                Child::Sphere(index) => {
-                    let (geometry, primitive) = tree.spheres[index];
-                    self.sphere(geometry.0, primitive.0, ray, query)
+                Child::Analytic(index) => {
+                    let (geometry, primitive) = tree.analytic[index];
+                    self.analytic(geometry.0, primitive.0, ray, query)
                 }
                 Child::Instance(index) => self.instance::<ANY>(index, ray, query, &mut stack[depth..]),
             };
@@ -128,7 +128,7 @@ impl<K: Kernel> Walk<'_, K> {
             match children[rest.trailing_zeros() as usize % WIDTH].get() {
                 Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
                 Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
-                Child::Sphere(_) | Child::Instance(_) => {}
+                Child::Analytic(_) | Child::Instance(_) => {}
             }
             rest &= rest - 1;
         }
@@ -140,7 +140,7 @@ impl<K: Kernel> Walk<'_, K> {
         match child.get() {
             Child::Node(index) => self.kernel.prefetch(&tree.nodes, index),
             Child::Block(index) => self.kernel.prefetch(&tree.blocks, index),
-            Child::Sphere(_) | Child::Instance(_) => {}
+            Child::Analytic(_) | Child::Instance(_) => {}
         }
     }
 
@@ -176,11 +176,8 @@ impl<K: Kernel> Walk<'_, K> {
     }
 
     #[inline(never)]
-    fn sphere(&self, geometry: u32, primitive: u32, ray: &LocalRay, query: &mut Query) -> bool {
+    fn analytic(&self, geometry: u32, primitive: u32, ray: &LocalRay, query: &mut Query) -> bool {
         let member = &self.scene.world.geometries()[geometry as usize];
-        let Shape::Spheres(spheres) = &member.shape else {
-            return false;
-        };
         if member.mask & query.mask == 0 {
             return false;
         }
@@ -190,7 +187,7 @@ impl<K: Kernel> Walk<'_, K> {
             primitive,
             instance: self.level.instance,
         };
-        query.offer_sphere(&spheres[primitive as usize], ray, candidate)
+        query.offer_analytic(&member.shape, primitive as usize, ray, candidate)
     }
 
     #[inline(never)]

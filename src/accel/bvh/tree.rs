@@ -6,7 +6,7 @@ use super::build::{self, BuildParams, Item};
 use super::collapse::collapse;
 use super::leaf::{Block, FixedBlock, MovingBlock};
 use super::node::{Child, ChildRef, FixedNode, MovingNode, Node};
-use crate::geometry::{GeometryId, PrimitiveId, Shape, Sphere, TriangleMesh, World};
+use crate::geometry::{GeometryId, PrimitiveId, Shape, TriangleMesh, World};
 use crate::math::Bounds3;
 
 /// A tree of 8-wide nodes; the root is the first.
@@ -17,11 +17,11 @@ pub struct Tree<N, B> {
     pub nodes: Vec<N>,
     /// Leaves of triangles.
     pub blocks: Vec<B>,
-    /// Leaves of one sphere each.
-    pub spheres: Vec<(GeometryId, PrimitiveId)>,
+    /// Leaves of one primitive each, those that are no triangles.
+    pub analytic: Vec<(GeometryId, PrimitiveId)>,
 }
 
-/// A tree of what does not move: triangles, spheres, and instances by the box of all that they sweep.
+/// A tree of what does not move: triangles, other primitives, and instances by the box of all that they sweep.
 pub type FixedTree = Tree<FixedNode, FixedBlock>;
 
 /// A tree of triangles whose vertices move, over one segment of time.
@@ -45,7 +45,7 @@ pub struct GroupTrees {
 
 impl<N, B> Tree<N, B> {
     fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice()) + size_of_val(self.spheres.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice()) + size_of_val(self.analytic.as_slice())
     }
 }
 
@@ -53,7 +53,7 @@ impl<N, B> Tree<N, B> {
 pub fn mesh(world: &World, id: GeometryId) -> Option<&TriangleMesh> {
     match &world.geometry(id).shape {
         Shape::Mesh(mesh) => Some(mesh),
-        Shape::Spheres(_) => None,
+        _ => None,
     }
 }
 
@@ -75,27 +75,27 @@ impl GroupTrees {
 
 fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins: usize) -> Option<FixedTree> {
     let mut triangles = Vec::new();
-    let mut spheres = Vec::new();
+    let mut analytic = Vec::new();
     let mut boxes = Vec::new();
     for &id in members {
-        match &world.geometry(id).shape {
-            Shape::Mesh(mesh) if mesh.is_moving() => {}
-            Shape::Mesh(mesh) => {
-                let bounds = (0..mesh.triangle_count()).into_par_iter();
-                boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
-                triangles.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
-            }
-            Shape::Spheres(_) => {}
+        if let Shape::Mesh(mesh) = &world.geometry(id).shape
+            && !mesh.is_moving()
+        {
+            let bounds = (0..mesh.triangle_count()).into_par_iter();
+            boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
+            triangles.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }
     for &id in members {
-        if let Shape::Spheres(shapes) = &world.geometry(id).shape {
-            boxes.extend(shapes.iter().map(Sphere::bounds));
-            spheres.extend((0..shapes.len()).map(|i| (id, PrimitiveId::from_index(i))));
+        let shape = &world.geometry(id).shape;
+        if shape.is_analytic() {
+            let bounds = (0..shape.primitive_count()).into_par_iter();
+            boxes.par_extend(bounds.map(|i| shape.primitive_bounds(i)));
+            analytic.extend((0..shape.primitive_count()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }
     boxes.extend_from_slice(instances);
-    let first_instance = triangles.len() + spheres.len();
+    let first_instance = triangles.len() + analytic.len();
     let (tree, items) = binary(boxes, triangles.len(), bins)?;
 
     let mut blocks = Vec::new();
@@ -108,7 +108,7 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
             blocks.push(FixedBlock::new(world, &members, 0));
             Child::Block(blocks.len() - 1)
         } else if first < first_instance {
-            Child::Sphere(first - triangles.len())
+            Child::Analytic(first - triangles.len())
         } else {
             Child::Instance(first - first_instance)
         };
@@ -118,7 +118,7 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
         bounds: tree.bounds,
         nodes,
         blocks,
-        spheres,
+        analytic,
     })
 }
 
@@ -174,7 +174,7 @@ fn moving_tree(world: &World, meshes: &[GeometryId], segment: usize, bins: usize
         bounds: tree.bounds,
         nodes,
         blocks,
-        spheres: Vec::new(),
+        analytic: Vec::new(),
     })
 }
 

@@ -1,4 +1,4 @@
-//! What Embree calls back: the filter of cut-out geometry, and the intersection of spheres in double precision.
+//! What Embree calls back: the filter of cut-out geometry, and the intersection in double precision of what is no triangle.
 //!
 //! A packet in a callback is `N` values for each field, in the order of `RTCRay` and `RTCHit`; `N` is what Embree chose.
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use embree_sys as ffi;
 
 use crate::accel::{FilterHit, HitFilter};
-use crate::geometry::{GeometryId, InstanceId, Opacity, PrimitiveId, Shape, Sphere, World};
+use crate::geometry::{GeometryId, InstanceId, Opacity, PrimitiveId, Shape, World};
 use crate::math::Vec3;
 
 /// The user data of one Embree geometry. Embree holds its address.
@@ -21,12 +21,8 @@ pub struct GeometryData {
 }
 
 impl GeometryData {
-    /// The spheres of the geometry; none if it is a mesh.
-    fn spheres(&self) -> &[Sphere] {
-        match &self.world.geometry(self.id).shape {
-            Shape::Spheres(spheres) => spheres,
-            Shape::Mesh(_) => &[],
-        }
+    fn shape(&self) -> &Shape {
+        &self.world.geometry(self.id).shape
     }
 }
 
@@ -173,18 +169,18 @@ pub unsafe extern "C" fn filter_triangles(args: *const ffi::RTCFilterFunctionNAr
     }
 }
 
-/// The box of one sphere.
-pub unsafe extern "C" fn sphere_bounds(args: *const ffi::RTCBoundsFunctionArguments) {
+/// The box of one primitive.
+pub unsafe extern "C" fn primitive_bounds(args: *const ffi::RTCBoundsFunctionArguments) {
     // SAFETY: Embree passes valid arguments, with the user data of the geometry.
     let (args, geometry) = unsafe {
         let args = &*args;
         (args, &*args.geometryUserPtr.cast::<GeometryData>())
     };
     // Nothing below panics: a primitive beyond the end, which Embree does not ask for, gets no box.
-    let Some(sphere) = geometry.spheres().get(args.primID as usize) else {
+    let bounds = geometry.shape().primitive_bounds(args.primID as usize);
+    if bounds.is_empty() {
         return;
-    };
-    let bounds = sphere.bounds();
+    }
     // Embree's slab test of user geometry rounds by some units of the coordinates' size, even in robust mode.
     let margin = bounds.min.abs().max(bounds.max.abs()) * (8.0 * f32::EPSILON);
     let (lower, upper) = (bounds.min - margin, bounds.max + margin);
@@ -202,40 +198,35 @@ pub unsafe extern "C" fn sphere_bounds(args: *const ffi::RTCBoundsFunctionArgume
     unsafe { *args.bounds_o = bounds };
 }
 
-/// The nearest hit of `lane` on a sphere that counts.
-fn sphere_hit(
+/// The nearest hit of `lane` on a primitive that counts.
+fn primitive_hit(
     (geometry, query): (&GeometryData, &QueryData),
     primitive: c_uint,
     instance: Option<InstanceId>,
     rays: &RaySlots,
     lane: usize,
 ) -> Option<f32> {
-    let sphere = geometry.spheres().get(primitive as usize)?;
     let origin = rays.vector(RaySlots::ORIGIN, lane).as_dvec3();
     let direction = rays.vector(RaySlots::DIRECTION, lane).as_dvec3();
     let inside = f64::from(rays.get(RaySlots::TNEAR, lane))..=f64::from(rays.get(RaySlots::TFAR, lane));
-    let hits = sphere.intersect(origin, direction)?;
+    let hits = geometry.shape().line_hits(primitive as usize, origin, direction);
     let filtered = geometry.world.geometry(geometry.id).opacity == Opacity::Filtered;
-    [hits.enter, hits.leave]
-        .into_iter()
-        .filter(|t| inside.contains(t))
-        .map(|t| t as f32)
-        .find(|&t| {
-            !filtered
-                || query.accepts(&FilterHit {
-                    geometry: geometry.id,
-                    primitive: PrimitiveId(primitive),
-                    instance,
-                    u: 0.0,
-                    v: 0.0,
-                    t,
-                    ray_id: rays.id(lane),
-                })
-        })
+    hits.iter().filter(|t| inside.contains(t)).map(|t| t as f32).find(|&t| {
+        !filtered
+            || query.accepts(&FilterHit {
+                geometry: geometry.id,
+                primitive: PrimitiveId(primitive),
+                instance,
+                u: 0.0,
+                v: 0.0,
+                t,
+                ray_id: rays.id(lane),
+            })
+    })
 }
 
-/// The nearest hits of a packet on one sphere.
-pub unsafe extern "C" fn intersect_sphere(args: *const ffi::RTCIntersectFunctionNArguments) {
+/// The nearest hits of a packet on one primitive.
+pub unsafe extern "C" fn intersect_primitive(args: *const ffi::RTCIntersectFunctionNArguments) {
     // SAFETY: Embree passes valid arguments: N lanes of `valid` and of a packet of rays and hits.
     unsafe {
         let args = &*args;
@@ -244,7 +235,7 @@ pub unsafe extern "C" fn intersect_sphere(args: *const ffi::RTCIntersectFunction
             let rays = RaySlots::new(args.rayhit.cast(), args.N);
             let instance = data.1.instance(args.context);
             for lane in active_lanes(args.valid, args.N) {
-                if let Some(t) = sphere_hit(data, args.primID, instance, &rays, lane) {
+                if let Some(t) = primitive_hit(data, args.primID, instance, &rays, lane) {
                     ffi::embree_accept_hit(args, lane as c_uint, t);
                 }
             }
@@ -252,8 +243,8 @@ pub unsafe extern "C" fn intersect_sphere(args: *const ffi::RTCIntersectFunction
     }
 }
 
-/// Whether the rays of a packet meet one sphere.
-pub unsafe extern "C" fn occlude_sphere(args: *const ffi::RTCOccludedFunctionNArguments) {
+/// Whether the rays of a packet meet one primitive.
+pub unsafe extern "C" fn occlude_primitive(args: *const ffi::RTCOccludedFunctionNArguments) {
     // SAFETY: Embree passes valid arguments: N lanes of `valid` and of a packet of rays.
     unsafe {
         let args = &*args;
@@ -262,7 +253,7 @@ pub unsafe extern "C" fn occlude_sphere(args: *const ffi::RTCOccludedFunctionNAr
             let mut rays = RaySlots::new(args.ray.cast(), args.N);
             let instance = data.1.instance(args.context);
             for lane in active_lanes(args.valid, args.N) {
-                if sphere_hit(data, args.primID, instance, &rays, lane).is_some() {
+                if primitive_hit(data, args.primID, instance, &rays, lane).is_some() {
                     rays.occlude(lane);
                 }
             }

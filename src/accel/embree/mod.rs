@@ -1,8 +1,8 @@
 //! Debian's Embree, version 3 or 4.
 //!
 //! A [`World`] becomes one Embree scene for each group and one for the root, which holds the geometries in world space and the
-//! instances. Meshes share the world's arrays; spheres are user geometry, intersected in double precision by
-//! [`Sphere::intersect`](crate::geometry::Sphere::intersect); only filtered geometry has a filter function.
+//! instances. Meshes share the world's arrays; all else is user geometry, intersected in double precision by
+//! [`Shape::line_hits`](crate::geometry::Shape::line_hits); only filtered geometry has a filter function.
 //!
 //! # Which call serves which kind of ray
 //!

@@ -79,7 +79,7 @@ impl Drop for SceneHandle {
     }
 }
 
-/// A geometry of Embree's: a mesh, spheres or an instance.
+/// A geometry of Embree's: a mesh, other primitives or an instance.
 pub struct GeometryHandle {
     handle: ffi::RTCGeometry,
     /// Kept until the geometry is released.
@@ -187,7 +187,7 @@ fn geometry(device: &Arc<Device>, data: &GeometryData) -> Result<Option<Geometry
     }
     let handle = match &geometry.shape {
         Shape::Mesh(mesh) => triangles(device, geometry, mesh)?,
-        Shape::Spheres(spheres) => spheres_of(device, geometry, spheres.len())?,
+        _ => analytic(device, geometry)?,
     };
     let user = (&raw const *data).cast_mut().cast::<c_void>();
     // SAFETY: the geometry is live; `data` outlives the scenes that hold it (see `Scenes`), and is only read.
@@ -244,15 +244,16 @@ fn triangles(device: &Arc<Device>, geometry: &Geometry, mesh: &TriangleMesh) -> 
     Ok(handle)
 }
 
-fn spheres_of(device: &Arc<Device>, geometry: &Geometry, count: usize) -> Result<GeometryHandle> {
+fn analytic(device: &Arc<Device>, geometry: &Geometry) -> Result<GeometryHandle> {
     let handle = GeometryHandle::new(device, ffi::RTC_GEOMETRY_TYPE_USER, geometry.mask)?;
-    let count = u32::try_from(count).map_err(|_| backend_error("more than 2^32 spheres in a geometry".into()))?;
+    let count = u32::try_from(geometry.primitive_count())
+        .map_err(|_| backend_error("more than 2^32 primitives in a geometry".into()))?;
     // SAFETY: the geometry is live, and the callbacks are those for its kind of user data.
     unsafe {
         ffi::rtcSetGeometryUserPrimitiveCount(handle.handle, count);
-        ffi::rtcSetGeometryBoundsFunction(handle.handle, Some(callbacks::sphere_bounds), std::ptr::null_mut());
-        ffi::rtcSetGeometryIntersectFunction(handle.handle, Some(callbacks::intersect_sphere));
-        ffi::rtcSetGeometryOccludedFunction(handle.handle, Some(callbacks::occlude_sphere));
+        ffi::rtcSetGeometryBoundsFunction(handle.handle, Some(callbacks::primitive_bounds), std::ptr::null_mut());
+        ffi::rtcSetGeometryIntersectFunction(handle.handle, Some(callbacks::intersect_primitive));
+        ffi::rtcSetGeometryOccludedFunction(handle.handle, Some(callbacks::occlude_primitive));
     }
     Ok(handle)
 }

@@ -13,7 +13,7 @@ const MOTION: f64 = 3.0 * U;
 /// Of transforms of instances that do not move, and of those that do.
 const INSTANCE: [f64; 2] = [16.0 * U, 64.0 * U];
 /// Of distances themselves: two roundings, and the comparison with `tnear` and `tfar`.
-const DISTANCE: f64 = 16.0 * U;
+pub(super) const DISTANCE: f64 = 16.0 * U;
 /// Of spheres.
 const SPHERE: f64 = 16.0 * f64::EPSILON;
 
@@ -111,10 +111,10 @@ fn distances(corners: &[Sheared; 3], edges: &[f64; 3], errors: &[f64; 3]) -> [f6
 
 /// A ray's line in the space of a group, with how far each coordinate of origin and direction may be off.
 pub(super) struct Line {
-    origin: DVec3,
-    direction: DVec3,
-    origin_margin: DVec3,
-    direction_margin: DVec3,
+    pub(super) origin: DVec3,
+    pub(super) direction: DVec3,
+    pub(super) origin_margin: DVec3,
+    pub(super) direction_margin: DVec3,
 }
 
 impl Line {

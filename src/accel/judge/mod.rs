@@ -23,8 +23,9 @@
 //! weights: see `Line::triangle`.
 //!
 //! Spheres are intersected in double precision by the backends too; their margin is that of the ray through an instance, and
-//! 16 roundings of the `f64` operations in units of the distances involved.
+//! 16 roundings of the `f64` operations in units of the distances involved. Other shapes: see `Line::analytic`.
 
+mod analytic;
 mod line;
 
 use std::sync::Arc;
@@ -172,6 +173,11 @@ impl Judge {
             Shape::Spheres(spheres) => {
                 for (index, sphere) in spheres.iter().enumerate() {
                     add(index, line.sphere(sphere, ray));
+                }
+            }
+            shape => {
+                for index in 0..shape.primitive_count() {
+                    add(index, line.analytic(shape, index, ray));
                 }
             }
         }

@@ -14,6 +14,8 @@ use crate::spectrum::ColorMode;
 pub enum ListKind {
     /// `Material`
     Materials,
+    /// `MakeNamedMedium`
+    Media,
     /// `LightSource`, `AreaLightSource`
     Lights,
     /// `Texture`

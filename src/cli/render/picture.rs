@@ -7,8 +7,9 @@ use super::Job;
 use super::prepare::{Picture, Prepared};
 use crate::cli::report::Reporter;
 use crate::cli::stats::{Photons, Statistics, peak_memory_bytes};
-use crate::desc::{SceneDesc, Terms};
+use crate::desc::{FilmKind, SceneDesc, Terms};
 use crate::error::{Error, Result};
+use crate::film::Film;
 use crate::image_io::{Image, ImageMetadata, Window, false_colors};
 use crate::integrator::{Integrator, Limits, RenderStats};
 use crate::scene::View;
@@ -38,6 +39,7 @@ impl Job<'_> {
             .as_ref()
             .and_then(|outputs| integrator.film_of_strategies(&view, outputs.pyramid))
             .unwrap_or_else(|| integrator.film(&view));
+        let film = view.with_layers(film, &prepared.scene);
         let progress = reporter.progress();
         let stats = self
             .pool
@@ -54,13 +56,26 @@ impl Job<'_> {
             render_seconds: stats.render_time.as_secs_f64(),
             scene_hash: prepared.desc.hash.clone(),
             chromaticities: chromaticities(view.color_space),
+            is_spectral: matches!(view.film_kind, FilmKind::Spectral(_)),
         };
         let mut pixels = film.develop();
         if self.args.photon_map.is_some() {
             false_colors(&mut pixels);
         }
-        let image = Image::rgb(data_window(&view), display_window(&view), pixels)?;
+        let image = image_of(&film, &view, pixels)?;
         let written = output.commit(&image, Some(&metadata), self.args.exposure)?;
+        if view.film_kind != FilmKind::Rgb && written.path.extension().is_none_or(|e| e != "exr") {
+            let path = written.path.display();
+            reporter.say(&format!(
+                "{path} has the colors only: the film's other layers need a file .exr"
+            ));
+        }
+        if film.dropped_surfaces() > 0 {
+            let dropped = film.dropped_surfaces();
+            reporter.say(&format!(
+                "warning: the layers leave out {dropped} surfaces that are out of range"
+            ));
+        }
         if view.color_space != ColorSpace::Srgb && written.path.extension().is_none_or(|e| e != "exr") {
             let name = view.color_space.name();
             reporter.say(&format!(
@@ -178,6 +193,25 @@ impl Job<'_> {
             dropped_samples: stats.dropped_samples,
         }
     }
+}
+
+/// The picture of a film, with what it keeps beside colours.
+fn image_of(film: &Film, view: &View, pixels: Vec<f32>) -> Result<Image> {
+    let layers = film.layer_channels();
+    if layers.is_empty() {
+        return Image::rgb(data_window(view), display_window(view), pixels);
+    }
+    let count = layers.len();
+    let values = film.develop_layers();
+    let both = pixels.chunks_exact(3).zip(values.chunks_exact(count));
+    let data = both.flat_map(|(rgb, layers)| rgb.iter().chain(layers)).copied();
+    let channels = ["R", "G", "B"].map(str::to_owned).into_iter().chain(layers);
+    Image::new(
+        data_window(view),
+        display_window(view),
+        channels.collect(),
+        data.collect(),
+    )
 }
 
 /// Samples of each pixel: those that were planned, unless the render ended early.

@@ -7,10 +7,11 @@ use super::Job;
 use super::strategies::StrategyOutputs;
 use crate::accel::BuildOptions;
 use crate::cli::report::Reporter;
-use crate::desc::{self, ParseOptions, SceneDesc};
+use crate::desc::{self, FilmKind, ParseOptions, SceneDesc};
 use crate::error::{Error, Result};
 use crate::image_io::PendingOutput;
 use crate::scene::{Scene, SceneOptions, View, ViewOverrides};
+use crate::spectrum::ColorMode;
 
 /// A scene, read and built.
 pub(super) struct Prepared {
@@ -55,6 +56,7 @@ impl Job<'_> {
         let mut pictures = Vec::new();
         for view_desc in &desc.views {
             let view = View::build(&desc, view_desc, args.color.into(), &overrides)?;
+            self.check_film(&desc, &view)?;
             let wanted = args.spp.unwrap_or(view_desc.sampler.pixel_samples);
             if view.sampler.samples_per_pixel() != wanted {
                 let rounded = view.sampler.samples_per_pixel();
@@ -80,7 +82,11 @@ impl Job<'_> {
             color: args.color.into(),
         };
         let scene = self.pool.install(|| Scene::build(&desc, &options))?;
-        if let Some(missed) = self.integrator(&desc)?.blind_spot(&scene) {
+        let integrator = self.integrator(&desc)?;
+        if let Some(missing) = integrator.missing(&scene) {
+            return Err(Error::Usage(format!("{}: {missing}", path.display())));
+        }
+        if let Some(missed) = integrator.blind_spot(&scene) {
             reporter.say(&format!("warning: {missed}"));
         }
         if scene.lights().is_empty() {
@@ -97,6 +103,32 @@ impl Job<'_> {
             },
             pictures,
         ))
+    }
+
+    /// Refuses a camera or a film that does not go with the integrator or the colour mode.
+    fn check_film(&self, desc: &SceneDesc, view: &View) -> Result<()> {
+        let integrator = self.integrator(desc)?;
+        if integrator.film(view).takes_splats() && !view.camera.takes_light_paths() {
+            return Err(Error::Usage(format!(
+                "`{}` connects light paths to the camera `{}`, which looks through lenses: `path`, `photon` and `sppm` do not",
+                integrator.name(),
+                view.name
+            )));
+        }
+        if !matches!(view.film_kind, FilmKind::Spectral(_)) {
+            return Ok(());
+        }
+        let problem = if ColorMode::from(self.args.color) == ColorMode::Rgb {
+            "light has no wavelengths with --color rgb".to_owned()
+        } else if integrator.film(view).takes_splats() {
+            format!("`{}` brings light to the film by its colors only", integrator.name())
+        } else {
+            return Ok(());
+        };
+        Err(Error::Usage(format!(
+            "the film `spectral` of the camera `{}` cannot be filled: {problem}",
+            view.name
+        )))
     }
 
     /// The file for a view: distinct from that of every other picture of this job.

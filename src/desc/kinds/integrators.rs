@@ -164,9 +164,14 @@ pub static RADIUS: Parameter = Parameter::float(
 )
 .unit("scene units");
 pub static VISUALIZE_STRATEGIES: Parameter =
-    Parameter::flag("visualizestrategies", false, "pbrt's; not supported if true");
-pub static VISUALIZE_WEIGHTS: Parameter = Parameter::flag("visualizeweights", false, "pbrt's; not supported if true");
-pub static REGULARIZE: Parameter = Parameter::flag("regularize", false, "pbrt's; not supported if true");
+    Parameter::flag("visualizestrategies", false, "pbrt's; no effect, see --strategies");
+pub static VISUALIZE_WEIGHTS: Parameter =
+    Parameter::flag("visualizeweights", false, "pbrt's; no effect, see --strategies");
+pub static REGULARIZE: Parameter = Parameter::flag(
+    "regularize",
+    false,
+    "pbrt's; no effect: surfaces stay as rough as they are",
+);
 pub static TERMINATION: Parameter = Parameter::choice(
     "termination",
     &["constant", "albedo"],

@@ -4,7 +4,7 @@ use super::Entry;
 use super::parameter::{FloatRange, Parameter, ParameterDefault, ParameterKind};
 
 /// All kinds.
-pub static MATERIALS: [Entry; 11] = [
+pub static MATERIALS: [Entry; 12] = [
     Entry::new(
         "Material",
         "diffuse",
@@ -142,6 +142,21 @@ pub static MATERIALS: [Entry; 11] = [
         "measured",
         "Reflection as measured, on both sides, from a file of RGL's database",
         &[&MEASURED_FILE, &DISPLACEMENT, &NORMAL_MAP],
+    ),
+    Entry::new(
+        "Material",
+        "hair",
+        "A fibre along the first texture coordinate, across which the second one runs: for curves",
+        &[
+            &SIGMA_A,
+            &HAIR_COLOR,
+            &EUMELANIN,
+            &PHEOMELANIN,
+            &HAIR_ETA,
+            &BETA_M,
+            &BETA_N,
+            &HAIR_ALPHA,
+        ],
     ),
     Entry::new("Material", "interface", "No surface", &[]),
 ];
@@ -322,5 +337,35 @@ pub static NORMAL_MAP: Parameter = Parameter::file(
     "normalmap",
     "An image of shading normals in the tangent frame, (1 + n) / 2 by colour, linear; counts before displacement; none by default",
 );
+
+pub static SIGMA_A: Parameter = Parameter::new(
+    "sigma_a",
+    ParameterKind::Absorption,
+    "Absorption over the radius of a fibre; counts before `color` and pigments",
+);
+pub static HAIR_COLOR: Parameter = Parameter::new(
+    "color",
+    ParameterKind::Reflectance { default: None },
+    "The colour of many fibres, instead of what one absorbs; counts before pigments",
+);
+pub static EUMELANIN: Parameter = Parameter::new(
+    "eumelanin",
+    ParameterKind::Pigment,
+    "How much there is of the brown pigment; 1.3 if nothing is said of color",
+);
+pub static PHEOMELANIN: Parameter = Parameter::new(
+    "pheomelanin",
+    ParameterKind::Pigment,
+    "How much there is of the red pigment",
+);
+pub static HAIR_ETA: Parameter = Parameter::float("eta", 1.55, FloatRange::AtLeastOne, "Index of refraction");
+pub static BETA_M: Parameter = Parameter::new("beta_m", unit(0.3), "Roughness along the fibre");
+pub static BETA_N: Parameter = Parameter::new("beta_n", unit(0.3), "Roughness around the fibre");
+pub static HAIR_ALPHA: Parameter = Parameter::new(
+    "alpha",
+    ParameterKind::FloatTextured { default: 2.0 },
+    "Slant of the scales of the fibre",
+)
+.unit("degrees");
 
 pub static MEASURED_FILE: Parameter = Parameter::file("filename", "A .bsdf file");

@@ -1,9 +1,10 @@
-//! Every kind of material, light, texture, sampler and integrator with its parameters: the reader goes by these tables, and
+//! Every kind of material, medium, light, texture, sampler and integrator with its parameters: the reader goes by these tables, and
 //! `lucerna list` prints them.
 
 pub(super) mod integrators;
 pub(super) mod lights;
 pub(super) mod materials;
+pub(super) mod media;
 mod parameter;
 pub(super) mod samplers;
 pub(super) mod textures;
@@ -13,6 +14,7 @@ use super::texture::TextureClass;
 pub use integrators::INTEGRATORS;
 pub use lights::LIGHTS;
 pub use materials::MATERIALS;
+pub use media::MEDIA;
 pub use parameter::{FloatRange, Parameter, ParameterDefault, ParameterKind};
 pub use samplers::SAMPLERS;
 pub use textures::TEXTURES;
@@ -20,7 +22,7 @@ pub use textures::TEXTURES;
 /// A kind of something that a scene file may use.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// The directive: `Material`, `LightSource`, `AreaLightSource`, `Texture`, `Sampler` or `Integrator`.
+    /// The directive: `Material`, `MakeNamedMedium`, `LightSource`, `AreaLightSource`, `Texture`, `Sampler` or `Integrator`.
     pub directive: &'static str,
     /// As in a scene file.
     pub name: &'static str,

@@ -89,6 +89,11 @@ pub enum ParameterKind {
     Points(usize),
     /// The spectrum of a light: `rgb`, `spectrum` or `blackbody`; by default the colour space's illuminant.
     Emission,
+    /// A spectrum that is no emission of a light: `rgb`, `spectrum` or `blackbody`, 0 or more.
+    Spectrum {
+        /// If none is given, at all wavelengths.
+        default: f64,
+    },
     /// `float`: a power or an illuminance, which counts if it is positive; there is no default.
     Photometric,
     /// `string`: one of a few words.
@@ -142,6 +147,10 @@ pub enum ParameterKind {
         /// The name of the spectrum if none is given.
         default: &'static str,
     },
+    /// `spectrum`, `rgb` or the name of a spectrum `texture`: absorption, not negative; there is no default.
+    Absorption,
+    /// `float` or the name of a float `texture`: how much there is of a pigment, not negative; there is no default.
+    Pigment,
     /// `float` or `spectrum`: the index of refraction of a dielectric.
     GlassIndex {
         /// If none is given, at all wavelengths.
@@ -227,12 +236,12 @@ impl ParameterKind {
             Self::Float { .. } | Self::Photometric => &["float"],
             Self::Vector(_) => &["vector3"],
             Self::Point(_) | Self::Points(_) => &["point3"],
-            Self::Emission => &["rgb", "spectrum", "blackbody"],
+            Self::Emission | Self::Spectrum { .. } => &["rgb", "spectrum", "blackbody"],
             Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::TwoMaterials => &["string"],
             Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
             Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
-            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } => &["float", "texture"],
-            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } => {
+            Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } | Self::Pigment => &["float", "texture"],
+            Self::Reflectance { .. } | Self::MetalIndex { .. } | Self::MetalAbsorption { .. } | Self::Absorption => {
                 &["rgb", "spectrum", "blackbody", "texture"]
             }
             Self::GlassIndex { .. } => &["float", "spectrum"],
@@ -249,14 +258,16 @@ impl ParameterKind {
             Self::Float { range, .. } | Self::FloatTexturedIn { range, .. } => range.text().to_owned(),
             Self::Reflectance { .. } => FloatRange::Unit.text().to_owned(),
             Self::MetalIndex { .. } | Self::GlassIndex { .. } => FloatRange::Positive.text().to_owned(),
-            Self::MetalAbsorption { .. } => FloatRange::NotNegative.text().to_owned(),
+            Self::MetalAbsorption { .. } | Self::Absorption | Self::Pigment => {
+                FloatRange::NotNegative.text().to_owned()
+            }
             Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Encoding { .. } => "sRGB, linear, \"gamma G\" with G more than 0".to_owned(),
             Self::Inert(_) => "any; it has no effect".to_owned(),
             Self::File => "a file".to_owned(),
             Self::Points(count) => format!("{count} points"),
-            Self::Emission => "0 or more".to_owned(),
+            Self::Emission | Self::Spectrum { .. } => "0 or more".to_owned(),
             Self::Photometric => "positive".to_owned(),
             Self::Vector(_) | Self::Point(_) | Self::FloatTextured { .. } => "finite".to_owned(),
             Self::Value { .. } | Self::Textured { .. } => "finite; of a spectrum 0 or more".to_owned(),
@@ -270,6 +281,7 @@ impl ParameterKind {
             Self::Integer { default, .. } => default.to_string(),
             Self::Float { default, .. }
             | Self::Value { default }
+            | Self::Spectrum { default }
             | Self::Textured { default }
             | Self::FloatTextured { default }
             | Self::GlassIndex { default } => default.to_string(),
@@ -283,7 +295,13 @@ impl ParameterKind {
             Self::Vector([x, y, z]) | Self::Point([x, y, z]) => format!("[ {x} {y} {z} ]"),
             Self::Choice { default, .. } => (*default).to_owned(),
             Self::Emission => "the colour space's illuminant".to_owned(),
-            Self::File | Self::TwoMaterials | Self::Points(_) | Self::Photometric | Self::Inert(_) => String::new(),
+            Self::File
+            | Self::TwoMaterials
+            | Self::Points(_)
+            | Self::Photometric
+            | Self::Absorption
+            | Self::Pigment
+            | Self::Inert(_) => String::new(),
         }
     }
 }

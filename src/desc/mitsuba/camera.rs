@@ -113,6 +113,8 @@ impl<'g> Loader<'g> {
                 return None;
             }
         };
+        // To the left of the picture is +x.
+        let world_from_camera = to_world * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         Some(CameraDesc {
             kind,
             screen,
@@ -122,8 +124,8 @@ impl<'g> Loader<'g> {
             aperture: ApertureDesc::Round,
             // Nothing moves.
             shutter: [0.0, 1.0],
-            // To the left of the picture is +x.
-            world_from_camera: MotionDesc::fixed(to_world * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0))),
+            medium: None,
+            camera_from_world: MotionDesc::fixed(world_from_camera.inverse()),
         })
     }
 

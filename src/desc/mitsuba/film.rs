@@ -4,7 +4,9 @@ use super::graph::Object;
 use super::loader::Loader;
 use super::plugins::Class;
 use super::props::Props;
-use crate::desc::{ColorSpace, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect, SensorDesc};
+use crate::desc::{
+    ColorSpace, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, MeasureDesc, PixelRect, SensorDesc,
+};
 use crate::error::Span;
 
 /// A film and the filter of its pixels.
@@ -20,6 +22,8 @@ impl Picture {
             film: FilmDesc {
                 resolution: [768, 576],
                 crop: CropDesc::Full,
+                diagonal: 35.0,
+                kind: FilmKind::Rgb,
                 filename: None,
                 iso: 100.0,
                 exposure_time: 1.0,

@@ -168,6 +168,7 @@ impl<'g> Loader<'g> {
             objects: self.objects,
             instances: self.instances,
             lights: self.lights,
+            media: Vec::new(),
             transform_times: [0.0, 1.0],
             warnings,
             hash,

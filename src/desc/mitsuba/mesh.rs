@@ -12,6 +12,7 @@ use super::plugins::Class;
 use super::props::Props;
 use super::xml::XmlReader;
 use crate::desc::{MeshDesc, obj, ply, serialized};
+use crate::error::Error;
 
 /// The meshes of a scene.
 #[derive(Debug)]
@@ -113,7 +114,9 @@ impl MeshFile {
 
     fn read(&self) -> Result<ReadMesh, String> {
         let (mut mesh, hash, flat) = match self.format {
-            Format::Obj => obj::load(&self.path).map(|file| (file.mesh, file.hash, false)),
+            Format::Obj => obj::load(&self.path)
+                .map(|file| (file.mesh, file.hash, false))
+                .map_err(|e| first_problem(&e)),
             Format::Ply => ply::load(&self.path).map(|file| (file.mesh, file.hash, false)),
             Format::Serialized => {
                 let file = serialized::load(&self.path, self.shape_index);
@@ -134,6 +137,17 @@ impl MeshFile {
             own_normals,
             hash,
         })
+    }
+}
+
+/// What is wrong with a mesh, first of all.
+fn first_problem(error: &Error) -> String {
+    match error {
+        Error::Scene(diagnostics) => diagnostics
+            .first()
+            .map_or_else(String::new, |d| format!("line {}: {}", d.line, d.message)),
+        Error::Io { source, .. } => source.to_string(),
+        other => other.to_string(),
     }
 }
 

@@ -67,6 +67,7 @@ impl<'g> Loader<'g> {
             world_from_object: MotionDesc::fixed(form.world_from_object),
             reverse_orientation: form.reverse_orientation,
             material,
+            media: None,
             alpha,
             area_light,
         })

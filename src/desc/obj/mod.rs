@@ -1,25 +1,55 @@
-//! Meshes in the OBJ format (Wavefront): vertices, normals, texture coordinates and polygons.
+//! Meshes in Wavefront's OBJ format, as text or compressed with gzip.
 //!
-//! Polygons become fans of triangles around their first vertex; what names one position with several normals or texture coordinates
-//! becomes as many vertices. Groups, materials, lines and points are passed over.
+//! Read are vertices (`v`), texture coordinates (`vt`) and normals (`vn`), faces (`f`, whose indices may count backwards), and
+//! which material the faces have (`mtllib`, `usemtl`). Polygons become fans of triangles around their first vertex. Corners that
+//! have vertex, texture coordinate and normal in common are one vertex of the mesh.
+//!
+//! Groups, objects, smoothing groups, lines, points and colours of vertices are passed over; free-form curves and surfaces are
+//! errors. Texture coordinates are as pbrt's, (0, 0) being the lower left corner of an image.
 
-mod line;
+mod reader;
+mod words;
 
-use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
-use glam::{Vec2, Vec3};
-
 use super::{MeshDesc, bytes};
-use line::{Line, index, statement};
+use crate::error::{Diagnostic, Error, Result};
 
 /// A mesh file.
 #[derive(Debug)]
 pub struct ObjFile {
-    /// What it describes.
+    /// All faces, in file order. It has normals if any face has, those of corners without being zero, which asks for the
+    /// geometric normal; likewise texture coordinates, zero for corners without.
     pub mesh: MeshDesc,
+    /// Runs of triangles of one material; they cover all triangles, in order.
+    pub parts: Vec<ObjPart>,
+    /// The materials that faces name, each once, in the order of their first use.
+    pub materials: Vec<ObjName>,
+    /// What `mtllib` says, each line once: a file's name, or several with spaces between.
+    pub libraries: Vec<ObjName>,
+    /// What is passed over and may have mattered, in file order.
+    pub warnings: Vec<Diagnostic>,
     /// BLAKE3 of its content, decompressed.
     pub hash: blake3::Hash,
+}
+
+/// Triangles that have their material in common.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ObjPart {
+    /// Index into [`ObjFile::materials`]; `None` before any `usemtl`.
+    pub material: Option<usize>,
+    /// Of [`MeshDesc::indices`].
+    pub triangles: Range<usize>,
+}
+
+/// A name, and the place where it is first used.
+#[derive(Clone, Debug)]
+pub struct ObjName {
+    /// As in the file.
+    pub name: String,
+    /// A warning at its place, with an empty message: for whoever finds that the name means nothing.
+    pub place: Diagnostic,
 }
 
 /// The longest file that is read, decompressed.
@@ -29,163 +59,72 @@ const LONGEST: u64 = 1 << 36;
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line.
-pub fn load(path: &Path) -> Result<ObjFile, String> {
-    let content = bytes::read(path, LONGEST).map_err(|e| e.to_string())?;
-    Ok(ObjFile {
-        mesh: parse(&content)?,
-        hash: blake3::hash(&content),
-    })
+/// [`Error::Scene`] with every problem found (at most some 50), [`Error::Io`] if it cannot be read.
+pub fn load(path: &Path) -> Result<ObjFile> {
+    let content = bytes::read(path, LONGEST).map_err(|e| Error::io("read", path, e))?;
+    parse(&content, path)
 }
 
-/// Reads a mesh from the content of a file, not compressed.
+/// Reads a mesh from the content of a file, not compressed; problems are reported under the name `path`.
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line.
-pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
-    let mut reader = Reader::default();
-    for (number, line) in content.split(|&b| b == b'\n').enumerate() {
-        let statement = statement(line);
-        statement
-            .and_then(|statement| reader.add(statement))
-            .map_err(|problem| format!("line {}: {problem}", number + 1))?;
-    }
-    reader.finish()
+/// [`Error::Scene`] with every problem found (at most some 50).
+pub fn parse(content: &[u8], path: &Path) -> Result<ObjFile> {
+    reader::read(content, path)
 }
 
-/// A corner of a polygon: places in the lists of the file, 0 for none, counted from 1.
-type Corner = [u32; 3];
-
-#[derive(Debug, Default)]
-struct Reader {
-    positions: Vec<Vec3>,
-    uvs: Vec<Vec2>,
-    normals: Vec<Vec3>,
-    vertices: HashMap<Corner, u32>,
-    /// By vertex.
-    corners: Vec<Corner>,
-    indices: Vec<[u32; 3]>,
-    polygon: Vec<u32>,
-}
-
-impl Reader {
-    fn add(&mut self, line: Line<'_>) -> Result<(), String> {
-        match line {
-            Line::Position(p) => self.positions.push(p),
-            Line::TextureCoordinates(uv) => self.uvs.push(uv),
-            Line::Normal(n) => self.normals.push(n),
-            Line::Face(words) => self.face(words)?,
-            Line::Other => {}
-        }
-        Ok(())
-    }
-
-    fn face(&mut self, words: &[u8]) -> Result<(), String> {
-        self.polygon.clear();
-        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
-        for word in words.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
-            let mut corner: Corner = [0; 3];
-            for (i, part) in word.split(|&b| b == b'/').enumerate() {
-                let Some(place) = corner.get_mut(i) else {
-                    return Err(format!("`{}` has more than two slashes", String::from_utf8_lossy(word)));
-                };
-                if !part.is_empty() {
-                    *place = index(part, counts[i], ["vertex", "texture coordinate", "normal"][i])?;
-                }
+impl ObjFile {
+    /// A mesh of its own for each material, and for the faces without; each with the vertices that it uses.
+    pub fn into_meshes(self) -> Vec<(Option<usize>, MeshDesc)> {
+        let mut order: Vec<Option<usize>> = Vec::new();
+        for part in &self.parts {
+            if !order.contains(&part.material) {
+                order.push(part.material);
             }
-            if corner[0] == 0 {
-                return Err(format!("`{}` names no vertex", String::from_utf8_lossy(word)));
-            }
-            let next = self.corners.len() as u32;
-            let vertex = *self.vertices.entry(corner).or_insert(next);
-            if vertex == next {
-                if next == u32::MAX {
-                    return Err("more vertices than 32 bits count".to_owned());
-                }
-                self.corners.push(corner);
-            }
-            self.polygon.push(vertex);
         }
-        if self.polygon.len() < 3 {
-            return Err(format!(
-                "a face has 3 corners at least, this one {}",
-                self.polygon.len()
-            ));
+        if let [only] = order[..] {
+            return vec![(only, self.mesh)];
         }
-        let first = self.polygon[0];
-        self.indices
-            .extend(self.polygon[1..].windows(2).map(|pair| [first, pair[0], pair[1]]));
-        Ok(())
-    }
-
-    /// Normals and texture coordinates are kept only if every corner has them.
-    fn finish(self) -> Result<MeshDesc, String> {
-        if self.indices.is_empty() {
-            return Err("there are no faces".to_owned());
-        }
-        let all = |i: usize| self.corners.iter().all(|corner| corner[i] != 0);
-        let pick = |i: usize| self.corners.iter().map(move |corner| corner[i] as usize - 1);
-        let positions = pick(0).map(|at| self.positions[at]).collect();
-        let uvs = if all(1) {
-            pick(1).map(|at| self.uvs[at]).collect()
-        } else {
-            Vec::new()
+        let mut place_of = vec![u32::MAX; self.mesh.positions.len()];
+        let of_material = |material: Option<usize>| {
+            let parts = self.parts.iter().filter(|part| part.material == material);
+            let mesh = submesh(&self.mesh, parts.map(|part| part.triangles.clone()), &mut place_of);
+            (material, mesh)
         };
-        let normals = if all(2) {
-            pick(2).map(|at| self.normals[at]).collect()
-        } else {
-            Vec::new()
-        };
-        Ok(MeshDesc {
-            positions,
-            uvs,
-            normals,
-            indices: self.indices,
-            ..MeshDesc::default()
-        })
+        order.into_iter().map(of_material).collect()
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn polygons_become_fans_and_corners_vertices() {
-        let text =
-            b"# a square\r\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvn 0 0 1\no x\n\
-                     f 1/1/1 2/2/1 3/3/1 4/4/1\nf -4/-4/-1 -2/-2/-1 -1/-1/-1\n";
-        let mesh = parse(text).unwrap();
-        assert_eq!(mesh.indices, [[0, 1, 2], [0, 2, 3], [0, 2, 3]]);
-        assert_eq!(mesh.positions[2], Vec3::new(1.0, 1.0, 0.0));
-        assert_eq!(mesh.uvs[3], Vec2::new(0.0, 1.0));
-        assert_eq!(mesh.normals, [Vec3::Z; 4]);
+/// Some triangles of a mesh, with the vertices that they use. `place_of` has a number for each vertex of the mesh, all of them
+/// `u32::MAX` before and after.
+fn submesh(mesh: &MeshDesc, parts: impl Iterator<Item = Range<usize>>, place_of: &mut [u32]) -> MeshDesc {
+    let mut used = Vec::new();
+    let mut indices = Vec::new();
+    for triangle in parts.flat_map(|triangles| &mesh.indices[triangles]) {
+        indices.push(triangle.map(|vertex| {
+            let place = &mut place_of[vertex as usize];
+            if *place == u32::MAX {
+                *place = used.len() as u32;
+                used.push(vertex as usize);
+            }
+            *place
+        }));
     }
-
-    #[test]
-    fn what_only_some_corners_have_is_left_out() {
-        let mesh = parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nvt 0 0\nf 1//1 2//1 3\nf 1/1 2/1 3/1").unwrap();
-        assert!(mesh.normals.is_empty() && mesh.uvs.is_empty());
-        assert_eq!(mesh.positions.len(), 6);
+    for &vertex in &used {
+        place_of[vertex] = u32::MAX;
     }
-
-    #[test]
-    fn errors_say_the_line() {
-        for (text, expected) in [
-            ("v 0 0\n", "line 1: "),
-            ("v 0 0 0\nv 1 0 x\n", "line 2: "),
-            ("v 0 0 0\nf 1 1 2\n", "there is no vertex 2: there are 1"),
-            ("v 0 0 0\nf 1 1 0\n", "line 2: "),
-            ("v 0 0 0\nf 1 1 -2\n", "line 2: "),
-            ("v 0 0 0\nf 1 1\n", "3 corners"),
-            ("v 0 0 0\nf 1/2/3/4 1 1\n", "line 2: "),
-            ("v 0 0 nan\n", "line 1: "),
-            ("v 0 0 1e300\n", "line 1: "),
-            ("", "no faces"),
-        ] {
-            let problem = parse(text.as_bytes()).unwrap_err();
-            assert!(problem.contains(expected), "{text:?}: {problem}");
+    fn pick<T: Copy>(values: &[T], used: &[usize]) -> Vec<T> {
+        if values.is_empty() {
+            return Vec::new();
         }
+        used.iter().map(|&vertex| values[vertex]).collect()
+    }
+    MeshDesc {
+        positions: pick(&mesh.positions, &used),
+        normals: pick(&mesh.normals, &used),
+        uvs: pick(&mesh.uvs, &used),
+        indices,
+        ..MeshDesc::default()
     }
 }

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::files::Context;
-use super::options::Options;
+use super::options::{Options, Surroundings};
 use super::params::Param;
 use super::reader::ParamReader;
 use super::state::{Block, GraphicsState, Saved};
 use super::world::{RawInstance, RawShape, World};
-use super::{light, material, shape, texture};
-use crate::desc::{ColorSpace, MotionDesc, TextureClass, Textured};
+use super::{light, material, medium, shape, texture, v3};
+use crate::desc::{ColorSpace, MediumInterfaceDesc, MotionDesc, TextureClass, Textured};
 use crate::error::Span;
 
 pub(super) use super::options::OptionKind;
@@ -22,9 +22,9 @@ pub(super) struct Builder {
     pub state: GraphicsState,
     pub options: Options,
     pub world: World,
-    saved: Vec<Saved>,
+    pub(super) saved: Vec<Saved>,
     coordinate_systems: HashMap<String, MotionDesc>,
-    in_world: bool,
+    pub(super) in_world: bool,
 }
 
 impl Builder {
@@ -58,17 +58,22 @@ impl Builder {
     }
 
     /// `Camera`, `Film` and the like.
-    pub fn option(&mut self, kind: OptionKind, name: &str, name_span: Span, params: Vec<Param>, span: Span) {
+    pub fn option(&mut self, kind: OptionKind, mut name: String, name_span: Span, mut params: Vec<Param>, span: Span) {
         if !self.expect_options(kind.directive(), span) {
             return;
         }
+        let report = &mut self.context.report;
+        v3::translate(report, kind.directive(), &mut name, name_span, &mut params);
         if kind == OptionKind::Camera {
             let world_from_camera = self.state.ctm.inverse();
             self.coordinate_systems.insert("camera".to_owned(), world_from_camera);
         }
-        let ctm = self.state.ctm;
+        let around = Surroundings {
+            ctm: self.state.ctm,
+            medium: self.state.media.exterior,
+        };
         self.options
-            .read(&mut self.context, kind, (name, name_span), params, span, ctm);
+            .read(&mut self.context, kind, (&name, name_span), params, span, around);
     }
 
     pub fn transform_times(&mut self, start: f64, end: f64, span: Span) {
@@ -139,37 +144,6 @@ impl Builder {
         }
     }
 
-    fn save(&mut self, why: Block, span: Span) {
-        self.saved.push(Saved {
-            state: self.state.clone(),
-            why,
-            span,
-        });
-    }
-
-    fn set_state(&mut self, state: GraphicsState) {
-        self.context.color_space = state.color_space;
-        self.state = state;
-    }
-
-    /// Goes back to the last saved state if it was saved for the same reason; otherwise complains.
-    fn restore(&mut self, why: Block, directive: &str, span: Span) {
-        match self.saved.pop() {
-            Some(saved) if saved.why == why => self.set_state(saved.state),
-            other => {
-                let open = match other.as_ref().map(|s| s.why) {
-                    Some(Block::Attribute) => "what was begun last is `AttributeBegin`",
-                    Some(Block::Object) => "what was begun last is `ObjectBegin`",
-                    Some(Block::Import) | None => "nothing has been begun in this file",
-                };
-                self.saved.extend(other);
-                self.context
-                    .report
-                    .error(span, format!("`{directive}` without a matching begin: {open}"));
-            }
-        }
-    }
-
     pub fn reverse_orientation(&mut self, span: Span) {
         if self.expect_world("ReverseOrientation", span) {
             self.state.reverse_orientation = !self.state.reverse_orientation;
@@ -217,9 +191,22 @@ impl Builder {
         }
     }
 
+    /// `MediumInterface`: the names of the media inside and outside of the shapes to come; the empty name is the vacuum.
+    pub fn medium_interface(&mut self, interior: (String, Span), exterior: (String, Span)) {
+        let media = &mut self.world.media;
+        self.state.media = MediumInterfaceDesc {
+            interior: media.named(interior.0, interior.1),
+            exterior: media.named(exterior.0, exterior.1),
+        };
+    }
+
     /// A directive with a type and parameters inside the world.
-    pub fn entity(&mut self, directive: &str, name: String, name_span: Span, params: Vec<Param>, span: Span) {
+    pub fn entity(&mut self, directive: &str, mut name: String, name_span: Span, mut params: Vec<Param>, span: Span) {
         if directive != "Attribute" && directive != "MakeNamedMedium" && !self.expect_world(directive, span) {
+            return;
+        }
+        let report = &mut self.context.report;
+        if !v3::translate(report, directive, &mut name, name_span, &mut params) {
             return;
         }
         let defaults = &self.state.defaults;
@@ -230,10 +217,7 @@ impl Builder {
             "AreaLightSource" => ("area light", Arc::clone(&defaults.light)),
             "Shape" => ("shape", Arc::clone(&defaults.shape)),
             "Attribute" => return self.set_defaults(&name, name_span, params),
-            _ => {
-                let report = &mut self.context.report;
-                return report.unsupported(span, "participating media are not supported yet", "it is ignored");
-            }
+            _ => ("medium", Arc::clone(&defaults.medium)),
         };
         let reader = ParamReader::new(&mut self.context, class, &name, name_span, params, &defaults);
         match directive {
@@ -243,11 +227,19 @@ impl Builder {
             }
             "MakeNamedMaterial" => {
                 let material = material::read_named(reader, &mut self.world.materials);
-                if let Some(problem) = self.world.materials.define(name, name_span, material) {
-                    self.context.report.error(name_span, problem);
+                if self.world.materials.is_defined(&name) && !self.redefine(name_span) {
+                    let message = format!("there is a named material `{name}` already");
+                    self.context.report.error(name_span, message);
+                } else {
+                    self.world.materials.define(name, name_span, material);
                 }
             }
             "LightSource" => self.world.lights.extend(light::read(reader, &name, self.state.ctm)),
+            "MakeNamedMedium" => {
+                if let Some(problem) = self.world.media.define(medium::read(reader, name)) {
+                    self.context.report.error(name_span, problem);
+                }
+            }
             "AreaLightSource" => self.state.area_light = light::read_area(reader, &name).map(Arc::new),
             _ => {
                 if let Some((kind, alpha)) = shape::read(reader, &name, &mut self.world.meshes) {
@@ -262,22 +254,25 @@ impl Builder {
         &mut self,
         (name, name_span): (String, Span),
         (class, class_span): (&str, Span),
-        (kind, kind_span): (&str, Span),
-        params: Vec<Param>,
+        (mut kind, kind_span): (String, Span),
+        mut params: Vec<Param>,
         span: Span,
     ) {
         if !self.expect_world("Texture", span) {
             return;
         }
+        let report = &mut self.context.report;
+        v3::translate(report, "Texture", &mut kind, kind_span, &mut params);
         let class = match class {
             "float" => TextureClass::Float,
             "spectrum" => TextureClass::Spectrum,
+            "color" if report.is_old() => TextureClass::Spectrum,
             _ => {
                 let message = format!("a texture is of the class `float` or `spectrum`, not `{class}`");
                 return self.context.report.error(class_span, message);
             }
         };
-        if self.context.textures.is_defined(class, &name) {
+        if self.context.textures.is_defined(class, &name) && !self.redefine(name_span) {
             let message = format!("there is a {} texture `{name}` already", class.name());
             return self.context.report.error(name_span, message);
         }
@@ -287,8 +282,21 @@ impl Builder {
         }
         let defaults = Arc::clone(&self.state.defaults.texture);
         let what = format!("{} texture", class.name());
-        let reader = ParamReader::new(&mut self.context, &what, kind, kind_span, params, &defaults);
-        texture::read(reader, name, class, kind, self.state.ctm.start);
+        let reader = ParamReader::new(&mut self.context, &what, &kind, kind_span, params, &defaults);
+        texture::read(reader, name, class, &kind, self.state.ctm.start);
+    }
+
+    /// Whether a name may get another meaning, as in pbrt-v3.
+    fn redefine(&mut self, span: Span) -> bool {
+        let report = &mut self.context.report;
+        let old = report.is_old();
+        if old {
+            report.translated(
+                span,
+                "this name is defined a second time: from here on it means this, as in pbrt-v3",
+            );
+        }
+        old
     }
 
     fn shape(&mut self, kind: shape::RawKind, alpha: Textured<f32>, span: Span) {
@@ -309,6 +317,7 @@ impl Builder {
             world_from_object: self.state.ctm,
             reverse_orientation: self.state.reverse_orientation,
             material: self.state.material,
+            media: self.state.media,
             alpha,
             area_light,
         });
@@ -321,7 +330,7 @@ impl Builder {
             "light" => ("light", &mut defaults.light),
             "material" => ("material", &mut defaults.material),
             "texture" => ("texture", &mut defaults.texture),
-            "medium" => return,
+            "medium" => ("medium", &mut defaults.medium),
             _ => {
                 let known = ["shape", "light", "material", "medium", "texture"];
                 let message = format!("unknown target `{target}` of `Attribute`");
@@ -340,49 +349,5 @@ impl Builder {
                 ..param
             });
         }
-    }
-
-    /// A file has been opened by `Import`, whose argument is at `span`.
-    pub fn import_begin(&mut self, span: Span) {
-        self.save(Block::Import, span);
-    }
-
-    /// A file that `Import` opened has ended.
-    pub fn import_end(&mut self) {
-        while let Some(saved) = self.saved.pop() {
-            let is_import = saved.why == Block::Import;
-            if !is_import {
-                self.unclosed(&saved);
-            }
-            self.set_state(saved.state);
-            if is_import {
-                break;
-            }
-        }
-    }
-
-    /// The main file has ended; `end` is there.
-    pub fn end(&mut self, end: Span) {
-        while let Some(saved) = self.saved.pop() {
-            self.unclosed(&saved);
-        }
-        if !self.in_world {
-            let message = "the file ends before `WorldBegin`: it describes no scene";
-            self.context.report.error(end, message);
-        }
-    }
-
-    fn unclosed(&mut self, saved: &Saved) {
-        let missing = match saved.why {
-            Block::Attribute => "`AttributeEnd`",
-            Block::Object => {
-                self.world.end_object();
-                "`ObjectEnd`"
-            }
-            Block::Import => return,
-        };
-        self.context
-            .report
-            .error(saved.span, format!("the {missing} for this is missing"));
     }
 }

@@ -1,12 +1,16 @@
 //! `Camera`.
 
+use std::sync::Arc;
+
+use super::options::Surroundings;
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
+use super::realistic;
 use crate::desc::{ApertureDesc, CameraDesc, CameraKind, MotionDesc};
 use crate::error::Span;
+use crate::sampling::SphereMap;
 
-const KNOWN: [&str; 2] = ["perspective", "orthographic"];
-const LATER: [&str; 2] = ["realistic", "spherical"];
+const KNOWN: [&str; 4] = ["perspective", "orthographic", "spherical", "realistic"];
 
 /// A camera and the name of its view, if it has one.
 #[derive(Clone, Debug)]
@@ -17,7 +21,7 @@ pub(super) struct NamedCamera {
 }
 
 /// The camera of a file without one.
-pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
+pub(super) fn default_camera(camera_from_world: MotionDesc) -> CameraDesc {
     CameraDesc {
         kind: CameraKind::Perspective {
             fov: 90.0,
@@ -29,24 +33,29 @@ pub(super) fn default_camera(world_from_camera: MotionDesc) -> CameraDesc {
         focal_distance: 1e6,
         aperture: ApertureDesc::Round,
         shutter: [0.0, 1.0],
-        world_from_camera,
+        medium: None,
+        camera_from_world,
     }
 }
 
 /// Reads a camera; one of another type becomes a perspective one.
-pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_camera: MotionDesc) -> NamedCamera {
+pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings) -> NamedCamera {
     let span = reader.span;
-    let default = default_camera(world_from_camera);
+    let default = CameraDesc {
+        medium: around.medium,
+        ..default_camera(around.ctm)
+    };
     let kind = match kind {
-        "perspective" => CameraKind::Perspective {
+        "perspective" => Some(CameraKind::Perspective {
             fov: reader.float_in("fov", 90.0, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees"),
             near_clip: reader.not_negative("nearclip", 0.0),
-        },
-        "orthographic" => CameraKind::Orthographic,
+        }),
+        "orthographic" => Some(CameraKind::Orthographic),
+        "spherical" => Some(CameraKind::Spherical(sphere_map(&mut reader))),
+        "realistic" => realistic::read(&mut reader).map(|desc| CameraKind::Realistic(Arc::new(desc))),
         _ => {
-            let classes = (&KNOWN[..], &LATER[..]);
             let instead = "a perspective one with default parameters stands in";
-            unknown_type(reader.report(), "camera", kind, span, classes, instead);
+            unknown_type(reader.report(), "camera", kind, span, (&KNOWN, &[]), instead);
             return NamedCamera {
                 name: None,
                 camera: default,
@@ -54,21 +63,51 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_camera: M
             };
         }
     };
-    let camera = CameraDesc {
-        kind,
-        screen: screen_window(&mut reader),
-        frame_aspect: reader
-            .has("frameaspectratio")
-            .then(|| reader.positive("frameaspectratio", 1.0)),
-        lens_radius: reader.not_negative("lensradius", 0.0),
-        focal_distance: reader.positive("focaldistance", default.focal_distance),
-        aperture: aperture(&mut reader),
+    let common = CameraDesc {
         shutter: shutter(&mut reader),
-        world_from_camera,
+        kind: kind.clone().unwrap_or_else(|| default.kind.clone()),
+        ..default
+    };
+    let camera = match kind {
+        Some(CameraKind::Perspective { .. } | CameraKind::Orthographic) => CameraDesc {
+            screen: screen_window(&mut reader),
+            frame_aspect: reader
+                .has("frameaspectratio")
+                .then(|| reader.positive("frameaspectratio", 1.0)),
+            lens_radius: reader.not_negative("lensradius", 0.0),
+            focal_distance: reader.positive("focaldistance", common.focal_distance),
+            aperture: aperture(&mut reader),
+            ..common
+        },
+        Some(CameraKind::Spherical(_)) => {
+            let why = "a spherical camera has neither a screen nor a lens";
+            let names = ["screenwindow", "frameaspectratio", "lensradius", "focaldistance"];
+            reader.inert(&names.map(|name| (name, why)));
+            common
+        }
+        Some(CameraKind::Realistic(_)) | None => common,
     };
     let name = view_name(&mut reader);
     reader.finish();
     NamedCamera { name, camera, span }
+}
+
+fn sphere_map(reader: &mut ParamReader<'_>) -> SphereMap {
+    let Some((name, span)) = reader.string("mapping") else {
+        return SphereMap::EqualArea;
+    };
+    match name.as_str() {
+        "equalarea" => SphereMap::EqualArea,
+        "equirectangular" => SphereMap::LatLong,
+        _ => {
+            let known = ["equalarea", "equirectangular"];
+            let message = format!("a spherical camera's `mapping` is `equalarea` or `equirectangular`, not `{name}`");
+            reader
+                .report()
+                .unknown(span, message, "it is `equalarea`", &name, &known);
+            SphereMap::EqualArea
+        }
+    }
 }
 
 fn screen_window(reader: &mut ParamReader<'_>) -> Option<[f64; 4]> {

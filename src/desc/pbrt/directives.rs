@@ -108,7 +108,7 @@ fn skip_to_directive(lexer: &mut Lexer) {
 fn dispatch(builder: &mut Builder, lexer: &mut Lexer, word: &str, span: Span) -> Result<Next, Broken> {
     if let Some(kind) = OptionKind::of_directive(word) {
         let (name, name_span, params) = entity(builder, lexer, span)?;
-        builder.option(kind, &name, name_span, params, span);
+        builder.option(kind, name, name_span, params, span);
         return Ok(Next::Continue);
     }
     match word {
@@ -130,6 +130,7 @@ fn dispatch(builder: &mut Builder, lexer: &mut Lexer, word: &str, span: Span) ->
             setting(builder, lexer, word, span)?;
         }
         "WorldBegin" => builder.world_begin(span),
+        "WorldEnd" if builder.context.report.is_old() => {}
         "AttributeBegin" => builder.attribute_begin(span),
         "AttributeEnd" => builder.attribute_end(span),
         "TransformBegin" | "TransformEnd" => {
@@ -155,21 +156,18 @@ fn dispatch(builder: &mut Builder, lexer: &mut Lexer, word: &str, span: Span) ->
             }
         }
         "MediumInterface" => {
-            let inside = arguments(builder, lexer, span).string()?.0;
-            let mut outside = String::new();
+            let interior = arguments(builder, lexer, span).string()?;
+            let mut exterior = interior.clone();
             if lexer.peek().is_some_and(|t| t.kind == TokenKind::Quoted) {
-                outside = arguments(builder, lexer, span).string()?.0;
+                exterior = arguments(builder, lexer, span).string()?;
             }
-            if !inside.is_empty() || !outside.is_empty() {
-                let report = &mut builder.context.report;
-                report.unsupported(span, "participating media are not supported yet", "they are ignored");
-            }
+            builder.medium_interface(interior, exterior);
         }
         "Texture" => {
             let name = arguments(builder, lexer, span).string()?;
             let (class, class_span) = arguments(builder, lexer, span).string()?;
             let (kind, kind_span, params) = entity(builder, lexer, span)?;
-            builder.texture(name, (&class, class_span), (&kind, kind_span), params, span);
+            builder.texture(name, (&class, class_span), (kind, kind_span), params, span);
         }
         _ if is_directive(word.as_bytes()) => {
             let (name, name_span, params) = entity(builder, lexer, span)?;

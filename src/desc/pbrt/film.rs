@@ -5,14 +5,19 @@ use std::path::PathBuf;
 use super::params::ParamType;
 use super::reader::{ParamReader, unknown_type};
 use super::sensor;
-use crate::desc::{ColorSpace, CropDesc, FilmDesc, FilterDesc, FilterKind, MeasureDesc, PixelRect, SensorDesc};
+use crate::desc::{
+    ColorSpace, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace, MeasureDesc, PixelRect, SensorDesc,
+    SpectralBins,
+};
 use crate::error::Span;
+use crate::spectrum::{LAMBDA_MAX, LAMBDA_MIN};
 
 /// The film of a file without one.
 pub(super) fn default_film(span: Span) -> FilmDesc {
     FilmDesc {
         resolution: [1280, 720],
         crop: CropDesc::Full,
+        diagonal: 35.0,
         filename: None,
         iso: 100.0,
         exposure_time: 1.0,
@@ -21,17 +26,26 @@ pub(super) fn default_film(span: Span) -> FilmDesc {
         max_component: f64::INFINITY,
         color_space: ColorSpace::default(),
         measure: MeasureDesc::default(),
+        kind: FilmKind::default(),
         span,
     }
 }
 
+const KINDS: [&str; 3] = ["rgb", "gbuffer", "spectral"];
+
 /// Reads a film; one of another type becomes an RGB one. The exposure time is the camera's to say.
 pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
     let span = reader.span;
-    if kind != "rgb" {
-        let classes = (&["rgb"][..], &["gbuffer", "spectral"][..]);
-        unknown_type(reader.report(), "film", kind, span, classes, "an RGB film stands in");
-    }
+    let kind = match kind {
+        "gbuffer" => FilmKind::GBuffer(gbuffer_space(&mut reader)),
+        "spectral" => FilmKind::Spectral(spectral_bins(&mut reader)),
+        "rgb" => FilmKind::Rgb,
+        _ => {
+            let classes = (&KINDS[..], &[][..]);
+            unknown_type(reader.report(), "film", kind, span, classes, "an RGB film stands in");
+            FilmKind::Rgb
+        }
+    };
     let mut side = |name, default| {
         let valid = |v: i32| (1..=1 << 20).contains(&v);
         let value = reader.integer_in(name, default, valid, "between 1 and 1048576");
@@ -41,6 +55,7 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
     let film = FilmDesc {
         resolution,
         crop: crop(&mut reader, resolution),
+        diagonal: reader.positive("diagonal", 35.0),
         filename: reader.string("filename").map(|(name, _)| PathBuf::from(name)),
         iso: reader.positive("iso", 100.0),
         exposure_time: 1.0,
@@ -49,14 +64,46 @@ pub(super) fn read_film(mut reader: ParamReader<'_>, kind: &str) -> FilmDesc {
         max_component: reader.positive("maxcomponentvalue", f64::INFINITY),
         color_space: reader.context.color_space,
         measure: measure(&mut reader),
+        kind,
         span,
     };
-    reader.inert(&[
-        ("diagonal", "it matters to realistic cameras only"),
-        ("savefp16", "images are saved with 32 bits"),
-    ]);
+    reader.inert(&[("savefp16", "images are saved with 32 bits")]);
     reader.finish();
     film
+}
+
+fn gbuffer_space(reader: &mut ParamReader<'_>) -> GBufferSpace {
+    let Some((name, span)) = reader.string("coordinatesystem") else {
+        return GBufferSpace::Camera;
+    };
+    match name.as_str() {
+        "camera" => GBufferSpace::Camera,
+        "world" => GBufferSpace::World,
+        _ => {
+            let message = format!("a coordinate system is `camera` or `world`, not `{name}`");
+            let known = ["camera", "world"];
+            reader
+                .report()
+                .unknown(span, message, "it is that of the camera", &name, &known);
+            GBufferSpace::Camera
+        }
+    }
+}
+
+fn spectral_bins(reader: &mut ParamReader<'_>) -> SpectralBins {
+    let all = [LAMBDA_MIN, LAMBDA_MAX];
+    let valid = |v: f64| (f64::from(LAMBDA_MIN)..=f64::from(LAMBDA_MAX)).contains(&v);
+    let mut end = |name, default: f32| reader.float_in(name, default.into(), valid, "between 360 and 830 nm") as f32;
+    let range = [end("lambdamin", all[0]), end("lambdamax", all[1])];
+    let count = reader.integer_in("nbuckets", 16, |v| (1..=1024).contains(&v), "between 1 and 1024");
+    if range[0] >= range[1] {
+        let span = reader.span_of("lambdamax");
+        reader.report().error(span, "`lambdamax` must be more than `lambdamin`");
+    }
+    SpectralBins {
+        range: if range[0] < range[1] { range } else { all },
+        count: count.unsigned_abs(),
+    }
 }
 
 /// As in pbrt-v4, 0 is none. Below 1000 K nothing glows that could be white.
@@ -137,6 +184,12 @@ fn crop(reader: &mut ParamReader<'_>, resolution: [u32; 2]) -> CropDesc {
 pub(super) const DEFAULT_FILTER: FilterDesc = FilterDesc {
     kind: FilterKind::Gaussian { sigma: 0.5 },
     radius: [1.5, 1.5],
+};
+
+/// The same in pbrt-v3.
+pub(super) const OLD_DEFAULT_FILTER: FilterDesc = FilterDesc {
+    kind: FilterKind::Box,
+    radius: [0.5, 0.5],
 };
 
 /// Reads a pixel filter; one of another type becomes the default.

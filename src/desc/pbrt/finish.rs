@@ -33,13 +33,15 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     let instances = instances(&world, &mut context.report);
     let World {
         materials,
+        media,
         shapes,
         objects,
         lights,
         meshes,
         ..
     } = world;
-    let (materials, ids) = resolve_materials(materials.into_slots(), &mut context.report);
+    let materials = resolve_materials(materials.into_slots(), &mut context.report);
+    let media = media.finish(&mut context.report);
     let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
     let images = std::mem::take(&mut context.images);
     let images = context.read_images(&images);
@@ -47,7 +49,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));
     }
-    let mut shape_of = |shape: RawShape| resolve_shape(shape, &ids, &meshes, &mut context.report);
+    let mut shape_of = |shape: RawShape| resolve_shape(shape, &materials, &meshes, &mut context.report);
     let shapes = shapes.into_iter().filter_map(&mut shape_of).collect();
     let objects = objects
         .into_iter()
@@ -64,6 +66,7 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
         views,
         integrator: options.integrator(),
         materials,
+        media,
         textures,
         images,
         shapes,
@@ -97,52 +100,44 @@ fn instances(world: &World, report: &mut Report) -> Vec<InstanceDesc> {
     instances
 }
 
-/// The materials, and for each slot which one it is: none for an interface.
-fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> (Vec<MaterialDesc>, Vec<Option<MaterialId>>) {
+/// The materials, one for each slot.
+fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> Vec<MaterialDesc> {
     let mut materials = Vec::with_capacity(slots.len());
-    let mut ids = Vec::with_capacity(slots.len());
     let mut undefined = Vec::new();
     for slot in slots {
-        let material = match slot {
-            Slot::Surface(material) => *material,
-            Slot::Interface => {
-                ids.push(None);
-                continue;
-            }
+        materials.push(match slot {
+            Slot::Defined(material) => *material,
             Slot::Undefined { name, span } => {
                 undefined.push((name, span));
                 default_material(span)
             }
-        };
-        ids.push(Some(MaterialId(materials.len() as u32)));
-        materials.push(material);
+        });
     }
     let names: Vec<&str> = materials.iter().filter_map(|m| m.name.as_deref()).collect();
     for (name, span) in undefined {
         let message = format!("there is no named material `{name}`");
         report.unknown(span, message, "the default material stands in", &name, &names);
     }
-    resolve_mixes(&mut materials, &ids, report);
-    (materials, ids)
+    check_mixes(&materials, report);
+    materials
 }
 
 /// How many mixes may contain one another in a row.
 const DEEPEST_MIX: usize = 64;
 
-/// Makes the slots that mixes name the ids of their materials.
-fn resolve_mixes(materials: &mut [MaterialDesc], ids: &[Option<MaterialId>], report: &mut Report) {
-    for material in &mut *materials {
-        let MaterialKind::Mix { materials: parts, .. } = &mut material.kind else {
+/// Complains about mixes of what is no surface, and of themselves.
+fn check_mixes(materials: &[MaterialDesc], report: &mut Report) {
+    for material in materials {
+        let MaterialKind::Mix { materials: parts, .. } = &material.kind else {
             continue;
         };
-        let found = parts.map(|slot| ids[slot.0 as usize]);
-        if found.contains(&None) {
+        let is_interface = |id: &MaterialId| matches!(materials[id.0 as usize].kind, MaterialKind::Interface);
+        if parts.iter().any(is_interface) {
             report.error(
                 material.span,
                 "a mix cannot contain the material `interface`, which is no surface",
             );
         }
-        *parts = found.map(|id| id.unwrap_or(MaterialId(0)));
     }
     // Each round settles the mixes of what is settled; what a cycle needs never is.
     let mut settled: Vec<bool> = vec![false; materials.len()];
@@ -185,31 +180,45 @@ fn read_meshes(pending: &PendingMeshes, context: &mut Context) -> Vec<Arc<MeshDe
     meshes
 }
 
-/// A shape with everything in it; none if it has no surface, which is said.
+/// A shape with everything in it; none if nothing happens at it, which is said.
 fn resolve_shape(
     shape: RawShape,
-    materials: &[Option<MaterialId>],
+    materials: &[MaterialDesc],
     meshes: &[Arc<MeshDesc>],
     report: &mut Report,
 ) -> Option<ShapeDesc> {
-    let Some(material) = materials[shape.material] else {
-        let message =
-            "this shape is left out: the material `interface` has no surface, and without media it does nothing";
-        report.warning(shape.span, message);
-        return None;
-    };
+    let media = (shape.media.interior != shape.media.exterior).then_some(shape.media);
+    let mut area_light = shape.area_light.map(|light| (*light).clone());
+    if matches!(materials[shape.material].kind, MaterialKind::Interface) {
+        if media.is_none() {
+            let message = "this shape is left out: the material `interface` has no surface, and there is the same medium on its two sides";
+            report.warning(shape.span, message);
+            return None;
+        }
+        if area_light.take().is_some() {
+            let message = "this shape does not emit: the material `interface` has no surface";
+            report.warning(shape.span, message);
+        }
+    }
     let kind = match shape.kind {
-        RawKind::Mesh(mesh) => ShapeKind::TriangleMesh(mesh),
-        RawKind::Pending(index) => ShapeKind::TriangleMesh(Arc::clone(&meshes[index])),
-        RawKind::Sphere { radius } => ShapeKind::Sphere { radius },
+        RawKind::Whole(kind) => kind,
+        RawKind::File { file, displacement } => {
+            let mesh = Arc::clone(&meshes[file]);
+            match displacement {
+                None => ShapeKind::TriangleMesh(mesh),
+                Some(displacement) => ShapeKind::DisplacedMesh { mesh, displacement },
+            }
+        }
     };
     Some(ShapeDesc {
         span: shape.span,
         kind,
         world_from_object: shape.world_from_object,
         reverse_orientation: shape.reverse_orientation,
-        material,
+        // There are fewer materials than bytes in a file.
+        material: MaterialId(shape.material as u32),
+        media,
         alpha: shape.alpha,
-        area_light: shape.area_light.map(|light| (*light).clone()),
+        area_light,
     })
 }

@@ -11,13 +11,36 @@ use crate::desc::{
 /// If a file has no integrator.
 const DEFAULT_MAX_DEPTH: u32 = 5;
 
-const LATER: [&str; 6] = [
-    "ambientocclusion",
-    "function",
-    "mlt",
-    "randomwalk",
-    "simplepath",
-    "simplevolpath",
+/// pbrt's integrators that one of Lucerna's stands for: its name and what to say. All converge to
+/// the same image.
+const STAND_INS: [(&str, &str, &str); 5] = [
+    (
+        "mlt",
+        "bdpt",
+        "`mlt` is not there: `bdpt` is used, which has the same paths but samples them independently",
+    ),
+    ("volpath", "path", "`volpath` is taken for `path`"),
+    (
+        "simplevolpath",
+        "path",
+        "`simplevolpath` is taken for `path`, which is less noisy",
+    ),
+    (
+        "simplepath",
+        "path",
+        "`simplepath` is taken for `path`, which is less noisy",
+    ),
+    (
+        "randomwalk",
+        "path",
+        "`randomwalk` is taken for `path` with the strategy `bsdf`, which meets the same light with less noise",
+    ),
+];
+
+/// Those that render something else than light.
+const OTHERS: [(&str, &str); 2] = [
+    ("ambientocclusion", "shows how open surfaces are, not light"),
+    ("function", "integrates a function, not light"),
 ];
 
 /// Path tracing with 5 bounces, as in pbrt-v4.
@@ -31,18 +54,16 @@ pub(super) fn default() -> IntegratorDesc {
 
 /// Reads an integrator of type `kind`.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
-    let span = reader.span;
-    let entry = INTEGRATORS.iter().find(|entry| entry.name == kind).unwrap_or_else(|| {
-        if kind == "volpath" {
-            let message = "`volpath` is taken for `path`, which is the same without participating media";
-            reader.report().warning(span, message);
-        } else {
-            let known: Vec<_> = INTEGRATORS.iter().map(|entry| entry.name).chain(["volpath"]).collect();
-            let classes = (&known[..], &LATER[..]);
-            unknown_type(reader.report(), "integrator", kind, span, classes, "`path` is used");
-        }
+    let stand_in = STAND_INS.iter().find(|&&(name, ..)| name == kind);
+    let name = stand_in.map_or(kind, |&(_, name, _)| name);
+    let entry = INTEGRATORS.iter().find(|entry| entry.name == name).unwrap_or_else(|| {
+        unknown(&mut reader, kind);
         &kinds::PATH
     });
+    if let Some((_, _, message)) = stand_in {
+        let span = reader.span;
+        reader.report().warning(span, *message);
+    }
     let max_depth = u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok();
     // The oracle chooses no lights.
     let (light_sampler, kind) = match entry.name {
@@ -54,18 +75,25 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
         "sppm" => (light_sampler(&mut reader), IntegratorKind::Sppm(sppm(&mut reader))),
         "lightpath" => (LightSamplerKind::default(), IntegratorKind::LightTracer),
         "bdpt" => {
-            for flag in [
-                &kinds::REGULARIZE,
-                &kinds::VISUALIZE_STRATEGIES,
-                &kinds::VISUALIZE_WEIGHTS,
-            ] {
-                unsupported_flag(&mut reader, flag);
+            flag_without_effect(&mut reader, &kinds::REGULARIZE, UNREGULARIZED);
+            for flag in [&kinds::VISUALIZE_STRATEGIES, &kinds::VISUALIZE_WEIGHTS] {
+                flag_without_effect(&mut reader, flag, "see --strategies");
             }
             (light_sampler(&mut reader), IntegratorKind::Bdpt(heuristic(&mut reader)))
         }
         _ => (light_sampler(&mut reader), IntegratorKind::Path(path(&mut reader))),
     };
-    reader.finish_by(entry);
+    let kind = match stand_in {
+        Some(&(name, ..)) => {
+            let kind = of_stand_in(&mut reader, name, kind);
+            reader.finish();
+            kind
+        }
+        None => {
+            reader.finish_by(entry);
+            kind
+        }
+    };
     IntegratorDesc {
         max_depth,
         light_sampler,
@@ -73,8 +101,55 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
     }
 }
 
+/// What the parameters of `name`, one of [`STAND_INS`], make of the integrator that stands for it.
+fn of_stand_in(reader: &mut ParamReader<'_>, name: &str, kind: IntegratorKind) -> IntegratorKind {
+    const MLT: &str = "paths are independent; --spp says how many";
+    let without_lights = match name {
+        "simplepath" => {
+            reader.boolean("samplebsdf", true);
+            !reader.boolean("samplelights", true)
+        }
+        "randomwalk" => true,
+        "mlt" => {
+            reader.inert(&[
+                ("bootstrapsamples", MLT),
+                ("chains", MLT),
+                ("mutationsperpixel", MLT),
+                ("largestepprobability", MLT),
+                ("sigma", MLT),
+            ]);
+            false
+        }
+        _ => false,
+    };
+    match kind {
+        IntegratorKind::Path(path) if without_lights => IntegratorKind::Path(PathDesc {
+            strategy: Strategy::Bsdf,
+            ..path
+        }),
+        kind => kind,
+    }
+}
+
+/// Complains about an integrator that nothing stands for.
+fn unknown(reader: &mut ParamReader<'_>, kind: &str) {
+    let span = reader.span;
+    if let Some((_, what)) = OTHERS.iter().find(|&&(name, _)| name == kind) {
+        let message = format!("the integrator `{kind}` is not supported: it {what}");
+        reader.report().unsupported(span, message, "`path` is used");
+        return;
+    }
+    let own = INTEGRATORS.iter().map(|entry| entry.name);
+    let known: Vec<_> = own.chain(STAND_INS.iter().map(|&(name, ..)| name)).collect();
+    let classes = (&known[..], &[][..]);
+    unknown_type(reader.report(), "integrator", kind, span, classes, "`path` is used");
+}
+
+/// What is said of `regularize`.
+const UNREGULARIZED: &str = "surfaces stay as rough as they are";
+
 fn path(reader: &mut ParamReader<'_>) -> PathDesc {
-    unsupported_flag(reader, &kinds::REGULARIZE);
+    flag_without_effect(reader, &kinds::REGULARIZE, UNREGULARIZED);
     PathDesc {
         strategy: match reader.choice_by(&kinds::STRATEGY) {
             "bsdf" => Strategy::Bsdf,
@@ -129,12 +204,12 @@ fn heuristic(reader: &mut ParamReader<'_>) -> Heuristic {
     }
 }
 
-/// Says so if something of pbrt's that is not there is asked for.
-fn unsupported_flag(reader: &mut ParamReader<'_>, flag: &'static Parameter) {
+/// Says so if something of pbrt's that is not there is asked for; without it pictures converge to what is right.
+fn flag_without_effect(reader: &mut ParamReader<'_>, flag: &'static Parameter, why: &str) {
     if reader.bool_by(flag) {
         let span = reader.span_of(flag.name);
-        let message = format!("`{}` is not supported", flag.name);
-        reader.report().unsupported(span, message, "it is left out");
+        let message = format!("`{}` has no effect: {why}", flag.name);
+        reader.report().warning(span, message);
     }
 }
 

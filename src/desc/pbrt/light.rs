@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::images::check_color_space;
 use super::params::{ParamType, Values};
 use super::reader::{ParamReader, unknown_type};
+use super::report::Report;
 use super::spectrum::Use;
 use crate::desc::kinds::lights::{
     AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY,
@@ -18,6 +19,7 @@ use crate::desc::{
 };
 use crate::image_io::{self, Image};
 use crate::sampling::SphereMap;
+use crate::spectrum::{Outside, Spectrum, cie};
 
 /// Reads a light; none if its type is not known or something essential is wrong with it.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: MotionDesc) -> Option<LightDesc> {
@@ -57,7 +59,7 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, world_from_light: Mo
         }
     };
     let photometric = reader.photometric(photometric);
-    let scale = reader.float_by(&SCALE) as f32;
+    let scale = reader.float_by(&SCALE) as f32 * old_luminance(reader.report(), spectrum.as_ref());
     reader.finish_by(entry);
     Some(LightDesc {
         span,
@@ -89,14 +91,28 @@ pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaL
     reader.one_of(&RADIANCE, &AREA_IMAGE);
     let light = AreaLightDesc {
         span,
+        scale: reader.float_by(&SCALE) as f32 * old_luminance(reader.report(), l.as_ref()),
         l,
         image,
-        scale: reader.float_by(&SCALE) as f32,
         power: reader.photometric(&POWER),
         two_sided: reader.bool_by(&TWO_SIDED),
     };
     reader.finish_by(entry);
     Some(light)
+}
+
+/// pbrt-v3 takes a spectrum as it is where pbrt-v4 scales it to a luminance of 1: what it is short of that.
+fn old_luminance(report: &Report, spectrum: Option<&SpectrumDesc>) -> f32 {
+    let spectrum = match spectrum.map(|desc| &desc.value) {
+        Some(SpectrumValue::Samples(samples)) => Spectrum::tabulated(samples.clone(), Outside::Zero),
+        Some(SpectrumValue::Blackbody(kelvin)) => Spectrum::blackbody(*kelvin),
+        _ => return 1.0,
+    };
+    if report.is_old() {
+        spectrum.photometric() / cie::y_integral()
+    } else {
+        1.0
+    }
 }
 
 fn of_directive(directive: &str) -> impl Iterator<Item = &'static Entry> {
@@ -167,9 +183,12 @@ impl ParamReader<'_> {
             let value = SpectrumValue::Rgb([1.0; 3], space);
             return (!given && space != ColorSpace::Srgb).then_some(SpectrumDesc { value, span });
         };
-        if let SpectrumValue::Samples(samples) = &spectrum.value
-            && samples.iter().all(|&(_, value)| value == 0.0)
-        {
+        let is_black = match &spectrum.value {
+            SpectrumValue::Samples(samples) => samples.iter().all(|&(_, value)| value == 0.0),
+            SpectrumValue::Constant(value) => *value == 0.0,
+            _ => false,
+        };
+        if is_black {
             let message = format!(
                 "`{name}` is 0 everywhere: it has no luminance to be scaled to (`\"rgb {name}\" [0 0 0]` is black)"
             );

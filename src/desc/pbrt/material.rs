@@ -7,16 +7,17 @@ use super::reader::{ParamReader, unknown_type};
 use super::world::{Materials, default_material};
 use crate::desc::kinds::materials as kinds;
 use crate::desc::{
-    CoatDesc, ConductorDesc, DistributionDesc, MATERIALS, MaterialDesc, MaterialId, MaterialKind, MeasuredDesc,
-    Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MATERIALS, MaterialDesc, MaterialId,
+    MaterialKind, MeasuredDesc, Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
 };
 use crate::error::Span;
 use crate::image_io::Encoding;
 
-const LATER: [&str; 2] = ["hair", "subsurface"];
+/// The pigment of hair of which nothing is said: brown.
+const DEFAULT_EUMELANIN: f32 = 1.3;
 
 /// Reads a material that says its type by `"string type"`; see [`read`].
-pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> Option<MaterialDesc> {
+pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials) -> MaterialDesc {
     match reader.string("type") {
         Some((kind, span)) => read(reader, materials, &kind, Some(span)),
         None => {
@@ -25,19 +26,19 @@ pub(super) fn read_named(mut reader: ParamReader<'_>, materials: &mut Materials)
                 let message = "this material has no type: `\"string type\" \"diffuse\"`, for one";
                 reader.report().error(span, message);
             }
-            Some(default_material(reader.span))
+            default_material(reader.span)
         }
     }
 }
 
-/// Reads a material of type `kind`, which stands at `span` unless where the reader has it. `None`: no surface at all. What cannot
-/// be read becomes the default material.
+/// Reads a material of type `kind`, which stands at `span` unless where the reader has it. What cannot be
+/// read becomes the default material.
 pub(super) fn read(
     mut reader: ParamReader<'_>,
     materials: &mut Materials,
     kind: &str,
     span: Option<Span>,
-) -> Option<MaterialDesc> {
+) -> MaterialDesc {
     let span = span.unwrap_or(reader.span);
     let Some(entry) = MATERIALS.iter().find(|entry| entry.name == kind) else {
         return unknown(reader, kind, span);
@@ -46,12 +47,12 @@ pub(super) fn read(
     let can_have_relief = entry.has(kinds::DISPLACEMENT.name);
     let relief = if can_have_relief { relief(&mut reader) } else { None };
     reader.finish_by(entry);
-    kind.map(|kind| MaterialDesc {
+    MaterialDesc {
         name: None,
         kind,
         relief,
         span,
-    })
+    }
 }
 
 /// A normal map or a displacement; as in pbrt-v4 the former counts if both are given.
@@ -73,15 +74,23 @@ fn relief(reader: &mut ParamReader<'_>) -> Option<ReliefDesc> {
     Some(ReliefDesc::Normals(image))
 }
 
-fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<MaterialDesc> {
+fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> MaterialDesc {
     if matches!(kind, "" | "none") {
         let message = format!("the material `{kind}` is deprecated: it is taken for `interface`");
         reader.report().warning(span, message);
         reader.finish();
-        return None;
+        return MaterialDesc {
+            kind: MaterialKind::Interface,
+            ..default_material(span)
+        };
+    }
+    if kind == "subsurface" {
+        let message = "the material `subsurface` is not supported: light does not travel under surfaces here";
+        reader.report().unsupported(span, message, "a diffuse one stands in");
+        return default_material(span);
     }
     let known = MATERIALS.each_ref().map(|entry| entry.name);
-    let classes = (&known[..], &LATER[..]);
+    let classes = (&known[..], &[][..]);
     unknown_type(
         reader.report(),
         "material",
@@ -90,12 +99,12 @@ fn unknown(mut reader: ParamReader<'_>, kind: &str, span: Span) -> Option<Materi
         classes,
         "a diffuse one stands in",
     );
-    Some(default_material(span))
+    default_material(span)
 }
 
 /// The material of one of the kinds in [`MATERIALS`].
-fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str) -> Option<MaterialKind> {
-    Some(match kind {
+fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str) -> MaterialKind {
+    match kind {
         "diffuse" => MaterialKind::Diffuse {
             reflectance: reader.spectrum_textured_by(&kinds::REFLECTANCE),
             roughness: reader.float_textured_by(&kinds::DIFFUSE_ROUGHNESS),
@@ -127,14 +136,16 @@ fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str
             roughness: roughness(reader, &CONDUCTOR),
             coat: coat(reader, &kinds::INTERFACE_ETA, &INTERFACE),
         },
+        "hair" => MaterialKind::Hair(hair(reader)),
         "mix" => mix(reader, materials),
         "principled" => MaterialKind::Principled(principled(reader)),
         "measured" => match measured(reader) {
             Some(desc) => MaterialKind::Measured(Arc::new(desc)),
             None => default_material(reader.span).kind,
         },
-        _ => return None,
-    })
+        "interface" => MaterialKind::Interface,
+        _ => default_material(reader.span).kind,
+    }
 }
 
 fn metal(reader: &mut ParamReader<'_>, eta: &'static Parameter, k: &'static Parameter) -> ConductorDesc {
@@ -220,6 +231,47 @@ fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind 
     }
 }
 
+/// As in pbrt-v4, what is said of the colour counts in this order.
+fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
+    let names = [
+        kinds::SIGMA_A.name,
+        kinds::HAIR_COLOR.name,
+        kinds::EUMELANIN.name,
+        kinds::PHEOMELANIN.name,
+    ];
+    let given: Vec<&str> = names.into_iter().filter(|name| reader.has(name)).collect();
+    if let [first, rest @ ..] = &given[..]
+        && *first != kinds::EUMELANIN.name
+    {
+        for name in rest {
+            let span = reader.span_of(name);
+            let message = format!("`{name}` has no effect: there is `{first}`");
+            reader.report().warning(span, message);
+        }
+    }
+    let absorption = reader.absorption_by(&kinds::SIGMA_A);
+    let color = reader.reflectance_by(&kinds::HAIR_COLOR);
+    let pigments = [&kinds::EUMELANIN, &kinds::PHEOMELANIN].map(|pigment| reader.pigment_by(pigment));
+    HairDesc {
+        color: match (absorption, color, pigments) {
+            (Some(sigma), ..) => HairColorDesc::Absorption(sigma),
+            (None, Some(color), _) => HairColorDesc::Reflectance(color),
+            (None, None, [None, None]) => HairColorDesc::Pigments {
+                eumelanin: Textured::Value(DEFAULT_EUMELANIN),
+                pheomelanin: Textured::Value(0.0),
+            },
+            (None, None, [eumelanin, pheomelanin]) => HairColorDesc::Pigments {
+                eumelanin: eumelanin.unwrap_or(Textured::Value(0.0)),
+                pheomelanin: pheomelanin.unwrap_or(Textured::Value(0.0)),
+            },
+        },
+        eta: reader.float_by(&kinds::HAIR_ETA) as f32,
+        beta_m: reader.float_textured_by(&kinds::BETA_M),
+        beta_n: reader.float_textured_by(&kinds::BETA_N),
+        alpha: reader.float_textured_by(&kinds::HAIR_ALPHA),
+    }
+}
+
 fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
     if reader.has(kinds::PRINCIPLED_ETA.name) && reader.has(kinds::SPECULAR.name) {
         let span = reader.span_of(kinds::SPECULAR.name);
@@ -264,7 +316,7 @@ fn measured(reader: &mut ParamReader<'_>) -> Option<MeasuredDesc> {
     let path = reader.context.resolve(&file, span);
     let read = reader.context.read_text(&path).map_err(|e| e.to_string());
     match read.and_then(|bytes| rgl::parse(&bytes)) {
-        Ok(desc) => Some(desc),
+        Ok(desc) => Some(MeasuredDesc { path, ..desc }),
         Err(problem) => {
             let message = format!("cannot read the measured material {}: {problem}", path.display());
             reader.report().error(span, message);

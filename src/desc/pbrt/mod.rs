@@ -1,4 +1,4 @@
-//! The pbrt-v4 scene format.
+//! The pbrt-v4 scene format; files of pbrt-v3 are translated (`v3`).
 //!
 //! Read in three steps: `tokens` cuts the text, `directives` reads the arguments of each directive and has the `Builder` carry
 //! it out (the parameters of each kind of entity have a file of their own), and `finish` resolves names and reads mesh files.
@@ -6,6 +6,7 @@
 //!
 //! Beyond pbrt-v4, whatever is unknown, has the wrong type or is given twice is an error, many of them in one run.
 
+mod blocks;
 mod builder;
 mod camera;
 mod directives;
@@ -16,9 +17,11 @@ mod input;
 mod integrator;
 mod light;
 mod material;
+mod medium;
 mod options;
 mod params;
 mod reader;
+mod realistic;
 mod sampler;
 mod sensor;
 mod shape;
@@ -28,7 +31,9 @@ mod texture;
 mod texture_names;
 mod textured;
 mod tokens;
+mod v3;
 mod world;
+mod write;
 
 use std::path::Path;
 
@@ -38,6 +43,8 @@ use builder::Builder;
 use directives::{Next, execute};
 use files::Context;
 use input::Input;
+
+pub use write::write;
 
 /// Reads a pbrt-v4 scene file.
 ///
@@ -65,7 +72,18 @@ fn parse(text: Vec<u8>, path: &Path, options: &ParseOptions) -> Result<SceneDesc
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut builder = Builder::new(Context::new(directory, options));
     let mut input = Input::default();
+    let world_end = v3::world_end(&text);
     input.open_main(&mut builder.context, path, text);
+    if let (Some(start), Some(file)) = (world_end, input.current()) {
+        // Texts are shorter than 4 GiB.
+        let start = start as u32;
+        let span = Span {
+            start,
+            end: start + 8,
+            ..file.lexer.here()
+        };
+        builder.context.report.set_old(span);
+    }
     let mut end = Span::default();
     while let Some(file) = input.current() {
         if builder.context.report.is_full() {

@@ -8,7 +8,7 @@ use super::params::Param;
 use super::reader::ParamReader;
 use super::report::Report;
 use super::sampler;
-use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MotionDesc, SamplerDesc, ViewDesc};
+use crate::desc::{FilmDesc, FilterDesc, IntegratorDesc, MediumId, MotionDesc, SamplerDesc, ViewDesc};
 use crate::error::Span;
 
 /// A directive that is allowed only before `WorldBegin` and has a type and parameters.
@@ -46,6 +46,15 @@ impl OptionKind {
     }
 }
 
+/// What a camera is placed by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surroundings {
+    /// The current transform.
+    pub ctm: MotionDesc,
+    /// What fills the space around it.
+    pub medium: Option<MediumId>,
+}
+
 /// The options read so far.
 #[derive(Debug)]
 pub(super) struct Options {
@@ -71,7 +80,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Reads the option `kind` of type `name`; the current transform is `ctm`.
+    /// Reads the option `kind` of type `name`.
     pub fn read(
         &mut self,
         context: &mut Context,
@@ -79,7 +88,7 @@ impl Options {
         (name, name_span): (&str, Span),
         params: Vec<Param>,
         span: Span,
-        ctm: MotionDesc,
+        around: Surroundings,
     ) {
         let class = kind.directive().to_lowercase();
         let reader = ParamReader::new(context, &class, name, name_span, params, &[]);
@@ -90,7 +99,7 @@ impl Options {
                 false
             }
             OptionKind::Camera => {
-                self.cameras.push(camera::read(reader, name, ctm.inverse()));
+                self.cameras.push(camera::read(reader, name, around));
                 false
             }
             OptionKind::Film => self.film.replace(film::read_film(reader, name)).is_some(),
@@ -128,16 +137,23 @@ impl Options {
                 report.error(span, format!("there is a view `{name}` already"));
             }
             let [open, close] = camera.camera.shutter;
+            // The exposure of pbrt-v3 does not go by the shutter.
+            let exposure_time = if report.is_old() { 1.0 } else { close - open };
             let film = self.film.clone().unwrap_or_else(|| film::default_film(file));
             views.push(ViewDesc {
                 name,
                 camera: camera.camera.clone(),
-                film: FilmDesc {
-                    exposure_time: close - open,
-                    ..film
-                },
-                filter: self.filter.unwrap_or(film::DEFAULT_FILTER),
-                sampler: self.sampler.unwrap_or(sampler::DEFAULT),
+                film: FilmDesc { exposure_time, ..film },
+                filter: self.filter.unwrap_or(if report.is_old() {
+                    film::OLD_DEFAULT_FILTER
+                } else {
+                    film::DEFAULT_FILTER
+                }),
+                sampler: self.sampler.unwrap_or(if report.is_old() {
+                    sampler::OLD_DEFAULT
+                } else {
+                    sampler::DEFAULT
+                }),
                 span: camera.span,
             });
         }
@@ -167,7 +183,10 @@ pub(super) fn render_option(report: &mut Report, name: &str, value: &str, span: 
         .filter(|c| !matches!(c, '-' | '_'))
         .collect::<String>()
         .to_lowercase();
-    if let Some((_, why)) = INERT.iter().find(|&&(known, _)| known == plain) {
+    let is_flag = plain.starts_with("disable") || matches!(plain.as_str(), "forcediffuse" | "pixelstats" | "wavefront");
+    if is_flag && !matches!(value, "true" | "false") {
+        report.error(span, format!("the option `{name}` is `true` or `false`, not `{value}`"));
+    } else if let Some((_, why)) = INERT.iter().find(|&&(known, _)| known == plain) {
         report.warning(span, format!("the option `{name}` has no effect: {why}"));
     } else if UNSUPPORTED.contains(&plain.as_str()) {
         if value != "false" {

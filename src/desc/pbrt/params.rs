@@ -41,6 +41,13 @@ const TYPES: [(&str, ParamType); 13] = [
     ("blackbody", ParamType::Blackbody),
 ];
 
+/// The names of types in pbrt-v3 that pbrt-v4 no longer has.
+const OLD_TYPES: [(&str, ParamType); 3] = [
+    ("point", ParamType::Point3),
+    ("vector", ParamType::Vector3),
+    ("color", ParamType::Rgb),
+];
+
 impl ParamType {
     /// As it is written in a file.
     pub fn name(self) -> &'static str {
@@ -129,14 +136,19 @@ fn declaration(token: Token, report: &mut Report) -> Option<(ParamType, String)>
         );
         return None;
     };
+    if report.is_old()
+        && let Some((_, new)) = OLD_TYPES.iter().find(|&&(old, _)| old == kind)
+    {
+        report.translated(
+            token.span,
+            "the types `point`, `vector` and `color` are `point3`, `vector3` and `rgb` in pbrt-v4",
+        );
+        return Some((*new, name.to_owned()));
+    }
     let Some(known) = ParamType::parse(kind) else {
         let names = TYPES.map(|(name, _)| name);
-        let likely = match kind {
-            "point" => Some("point3"),
-            "vector" => Some("vector3"),
-            "color" => Some("rgb"),
-            _ => suggest::closest(kind, &names),
-        };
+        let old = OLD_TYPES.iter().find(|&&(old, _)| old == kind);
+        let likely = old.map_or_else(|| suggest::closest(kind, &names), |(_, new)| Some(new.name()));
         let help = likely.map(|name| format!("did you mean `{name}`?"));
         report.error_with_help(token.span, format!("unknown parameter type `{kind}`"), help);
         return None;
@@ -186,14 +198,20 @@ fn read_list(lexer: &mut Lexer, report: &mut Report, kind: Option<ParamType>, mo
             skip(lexer, most);
             Values::Broken
         }
-        Some(ParamType::Bool) => read_each(lexer, report, most, "`true` or `false`", |token, bytes| {
-            match (token.kind, bytes) {
-                (TokenKind::Word, b"true") => Ok(true),
-                (TokenKind::Word, b"false") => Ok(false),
-                _ => Err(None),
-            }
-        })
-        .map_or(Values::Broken, Values::Bools),
+        Some(ParamType::Bool) => {
+            let old = report.is_old();
+            read_each(lexer, report, most, "`true` or `false`", |token, bytes| {
+                match (token.kind, bytes) {
+                    (TokenKind::Word, b"true") => Ok(true),
+                    (TokenKind::Word, b"false") => Ok(false),
+                    // As pbrt-v3 has them.
+                    (TokenKind::Quoted, b"\"true\"") if old => Ok(true),
+                    (TokenKind::Quoted, b"\"false\"") if old => Ok(false),
+                    _ => Err(None),
+                }
+            })
+            .map_or(Values::Broken, Values::Bools)
+        }
         Some(ParamType::String | ParamType::Texture) => {
             read_strings(lexer, report, most).map_or(Values::Broken, Values::Strings)
         }

@@ -246,16 +246,6 @@ impl<'a> ParamReader<'a> {
         }
     }
 
-    /// Parameters that pbrt has and that would change the image, but are not supported.
-    pub fn unsupported(&mut self, names: &[&'static str]) {
-        for &name in names {
-            for span in self.use_up(name) {
-                let message = format!("`{name}` of {} is not supported yet", self.entity);
-                self.report().unsupported(span, message, "it is ignored");
-            }
-        }
-    }
-
     fn use_up(&mut self, name: &'static str) -> Vec<Span> {
         self.known.push(name);
         let mut spans = Vec::new();

@@ -11,6 +11,12 @@ pub(super) const DEFAULT: SamplerDesc = SamplerDesc {
     pixel_samples: 16,
 };
 
+/// The same in pbrt-v3.
+pub(super) const OLD_DEFAULT: SamplerDesc = SamplerDesc {
+    kind: SamplerKind::Halton,
+    pixel_samples: 16,
+};
+
 /// Reads a sampler. Those that pbrt has and Lucerna has not are replaced: what they converge to is the same.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> SamplerDesc {
     let span = reader.span;

@@ -23,8 +23,9 @@ pub(super) fn read(reader: &mut ParamReader<'_>) -> SensorDesc {
     if !path.exists() {
         let known: Vec<&str> = sensor_names().chain(["cie1931"]).collect();
         let help = suggest::closest(&name, &known).map(|n| format!("did you mean `{n}`?"));
+        let help = help.unwrap_or_else(|| format!("the names are {}", known.join(", ")));
         let message = format!("`{name}` is neither the name of a sensor nor a file of responses");
-        reader.report().error_with_help(span, message, help);
+        reader.report().error_with_help(span, message, Some(help));
         return SensorDesc::Cie1931;
     }
     file(reader, &path, span).map_or(SensorDesc::Cie1931, SensorDesc::Curves)

@@ -5,7 +5,7 @@ use super::reader::ParamReader;
 use super::suggest;
 use crate::desc::{SpectrumDesc, SpectrumValue};
 use crate::error::Span;
-use crate::spectrum::named_spectra;
+use crate::spectrum::{LAMBDA_MAX, LAMBDA_MIN, named_spectra};
 
 /// What a spectrum is for, which says what values it may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,8 @@ impl ParamReader<'_> {
             let known: Vec<&str> = named_spectra().collect();
             let help = suggest::closest(name, &known).map(|n| format!("did you mean `{n}`?"));
             let message = format!("`{name}` is neither the name of a spectrum nor a file");
-            self.report().error_with_help(span, message, help);
+            let help = help.unwrap_or_else(|| format!("the names are {}", known.join(", ")));
+            self.report().error_with_help(span, message, Some(help));
             return None;
         }
         match self.context.read_text(&path) {
@@ -160,6 +161,11 @@ impl ParamReader<'_> {
             return None;
         }
         self.check_values(param, &numbers[1..], usage, 2)?;
+        // The same all over what can be seen.
+        let (first, last) = (numbers[0] as f32, numbers[numbers.len() - 2] as f32);
+        if numbers.chunks_exact(2).all(|pair| pair[1] == numbers[1]) && first <= LAMBDA_MIN && last >= LAMBDA_MAX {
+            return Some(SpectrumValue::Constant(numbers[1] as f32));
+        }
         Some(SpectrumValue::Samples(
             numbers
                 .chunks_exact(2)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat4, DVec3};
 
 use super::params::Param;
-use crate::desc::{AreaLightDesc, ColorSpace, MotionDesc};
+use crate::desc::{AreaLightDesc, ColorSpace, MediumInterfaceDesc, MotionDesc};
 use crate::error::Span;
 
 /// What `AttributeBegin` saves and `AttributeEnd` restores.
@@ -21,6 +21,8 @@ pub(super) struct GraphicsState {
     /// The current material, an index of a slot.
     pub material: usize,
     pub area_light: Option<Arc<AreaLightDesc>>,
+    /// What `MediumInterface` set.
+    pub media: MediumInterfaceDesc,
     /// Defaults from `Attribute`.
     pub defaults: Defaults,
 }
@@ -32,6 +34,7 @@ pub(super) struct Defaults {
     pub light: Arc<Vec<Param>>,
     pub material: Arc<Vec<Param>>,
     pub texture: Arc<Vec<Param>>,
+    pub medium: Arc<Vec<Param>>,
 }
 
 /// A saved state and why it was saved.
@@ -61,6 +64,10 @@ impl GraphicsState {
             color_space: ColorSpace::default(),
             material: 0,
             area_light: None,
+            media: MediumInterfaceDesc {
+                interior: None,
+                exterior: None,
+            },
             defaults: Defaults::default(),
         }
     }

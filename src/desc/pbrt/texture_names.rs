@@ -51,8 +51,11 @@ impl Textures {
         id.is_some_and(|&id| self.depth(id).is_some())
     }
 
-    /// Defines a texture that is on top of `depth` others in a row.
+    /// Defines a texture that is on top of `depth` others in a row; what names it from here on means this one.
     pub fn define(&mut self, class: TextureClass, texture: TextureDesc, depth: u32) {
+        if self.is_defined(class, &texture.name) {
+            self.names.remove(&(class, texture.name.clone()));
+        }
         let id = self.named(class, &texture.name.clone(), texture.span);
         self.slots[id.0 as usize].defined = Some((texture, depth + 1));
     }

@@ -185,6 +185,22 @@ impl ParamReader<'_> {
         self.spectrum_textured(parameter.name, Use::Albedo)
     }
 
+    /// An absorption by its table, if one is given.
+    pub fn absorption_by(&mut self, parameter: &'static Parameter) -> Option<Textured<SpectrumDesc>> {
+        self.spectrum_textured(parameter.name, Use::Absorption)
+    }
+
+    /// An amount of a pigment by its table, if one is given.
+    pub fn pigment_by(&mut self, parameter: &'static Parameter) -> Option<Textured<f32>> {
+        match self.float_textured(parameter.name)? {
+            Textured::Value(value) if value < 0.0 => {
+                self.out_of_range(parameter.name, &value.to_string(), &parameter.kind.range_text());
+                None
+            }
+            amount => Some(amount),
+        }
+    }
+
     /// The index of refraction of a dielectric by its table.
     pub fn glass_index_by(&mut self, parameter: &'static Parameter) -> SpectrumDesc {
         let default = match parameter.kind {

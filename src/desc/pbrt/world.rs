@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::medium::Media;
 use super::shape::{PendingMeshes, RawKind};
 use crate::desc::{
-    AreaLightDesc, LightDesc, MaterialDesc, MaterialKind, MotionDesc, SpectrumDesc, SpectrumValue, Textured,
+    AreaLightDesc, LightDesc, MaterialDesc, MaterialKind, MediumInterfaceDesc, MotionDesc, SpectrumDesc, SpectrumValue,
+    Textured,
 };
 use crate::error::Span;
 
@@ -13,6 +15,7 @@ use crate::error::Span;
 #[derive(Debug, Default)]
 pub(super) struct World {
     pub materials: Materials,
+    pub media: Media,
     pub shapes: Vec<RawShape>,
     pub objects: Vec<RawObject>,
     pub instances: Vec<RawInstance>,
@@ -31,6 +34,7 @@ pub(super) struct RawShape {
     pub world_from_object: MotionDesc,
     pub reverse_orientation: bool,
     pub material: usize,
+    pub media: MediumInterfaceDesc,
     pub alpha: Textured<f32>,
     pub area_light: Option<Arc<AreaLightDesc>>,
 }
@@ -112,9 +116,7 @@ pub(super) struct Materials {
 #[derive(Debug)]
 pub(super) enum Slot {
     /// A material.
-    Surface(Box<MaterialDesc>),
-    /// No surface, only a boundary between media.
-    Interface,
+    Defined(Box<MaterialDesc>),
     /// Nothing yet; where the name was first used.
     Undefined { name: String, span: Span },
 }
@@ -124,7 +126,7 @@ impl Default for Materials {
     fn default() -> Self {
         let span = Span::default();
         Self {
-            slots: vec![Slot::Surface(Box::new(default_material(span)))],
+            slots: vec![Slot::Defined(Box::new(default_material(span)))],
             names: HashMap::new(),
         }
     }
@@ -148,10 +150,9 @@ pub(super) fn default_material(span: Span) -> MaterialDesc {
 }
 
 impl Materials {
-    /// Adds a material (none: an interface); its slot.
-    pub fn add(&mut self, material: Option<MaterialDesc>) -> usize {
-        self.slots
-            .push(material.map_or(Slot::Interface, |material| Slot::Surface(Box::new(material))));
+    /// Adds a material; its slot.
+    pub fn add(&mut self, material: MaterialDesc) -> usize {
+        self.slots.push(Slot::Defined(Box::new(material)));
         self.slots.len() - 1
     }
 
@@ -165,20 +166,22 @@ impl Materials {
         })
     }
 
-    /// Defines a name; what is wrong with that, if anything is.
-    pub fn define(&mut self, name: String, span: Span, material: Option<MaterialDesc>) -> Option<String> {
-        let index = self.named(name.clone(), span);
-        if !matches!(self.slots[index], Slot::Undefined { .. }) {
-            return Some(format!("there is a named material `{name}` already"));
+    /// Whether a name is defined.
+    pub fn is_defined(&self, name: &str) -> bool {
+        let index = self.names.get(name);
+        index.is_some_and(|&index| !matches!(self.slots[index], Slot::Undefined { .. }))
+    }
+
+    /// Defines a name; what uses it from here on means this material.
+    pub fn define(&mut self, name: String, span: Span, material: MaterialDesc) {
+        if self.is_defined(&name) {
+            self.names.remove(&name);
         }
-        self.slots[index] = match material {
-            Some(material) => Slot::Surface(Box::new(MaterialDesc {
-                name: Some(name),
-                ..material
-            })),
-            None => Slot::Interface,
-        };
-        None
+        let index = self.named(name.clone(), span);
+        self.slots[index] = Slot::Defined(Box::new(MaterialDesc {
+            name: Some(name),
+            ..material
+        }));
     }
 
     /// All slots.

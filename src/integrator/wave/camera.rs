@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::Wave;
+use crate::accel::RayKind;
 use crate::camera::CameraSample;
 use crate::film::{PixelRect, TILE_SIZE};
 use crate::geometry::{LANES, Ray, RayCone};
@@ -44,6 +45,7 @@ impl<E: Estimator> Wave<'_, E> {
         self.slots.clear();
         let mut batch = self.spare.pop().unwrap_or_default();
         batch.restart(TransportMode::Radiance, 0);
+        batch.kind = RayKind::Camera;
         for sample in samples {
             for y in (all.y0..all.y1).step_by(BLOCK[1] as usize) {
                 for x in (all.x0..all.x1).step_by(BLOCK[0] as usize) {
@@ -87,14 +89,15 @@ impl<E: Estimator> Wave<'_, E> {
                 let numbers = film.map(|numbers| numbers[i]);
                 let (mut slot, camera_ray, cone) = camera_slot(self.scene, self.view, [x, y], sample, numbers, moment);
                 lane.cone = cone;
-                if !is_traced {
-                    // A light path only.
-                } else if camera_ray.is_valid() {
-                    ray = camera_ray;
-                    lane.state = self.estimator.camera_state(self.view, &ray);
-                    self.stats.camera_rays += 1;
-                } else {
-                    slot.broken = true;
+                match camera_ray.filter(|_| is_traced) {
+                    // A light path only, or nothing comes through the lenses.
+                    None => {}
+                    Some(camera_ray) if camera_ray.is_valid() => {
+                        ray = camera_ray;
+                        lane.state = self.estimator.camera_state(self.view, &ray);
+                        self.stats.camera_rays += 1;
+                    }
+                    Some(_) => slot.broken = true,
                 }
                 if is_wanted {
                     lane.slot = self.slots.len() as u32;
@@ -134,7 +137,7 @@ impl Pixels {
     }
 }
 
-/// A pixel sample, its camera ray and how wide that is, from the numbers for film and lens.
+/// A pixel sample, its camera ray, if one comes through the lenses, and how wide that is, from the numbers for film and lens.
 #[inline]
 fn camera_slot(
     scene: &Scene,
@@ -143,7 +146,7 @@ fn camera_slot(
     sample: u32,
     [film_x, film_y, lens_x, lens_y]: [f32; 4],
     moment: Moment,
-) -> (Slot, Ray, RayCone) {
+) -> (Slot, Option<Ray>, RayCone) {
     let filter = view.filter.sample(Vec2::new(film_x, film_y));
     let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
     let camera_sample = CameraSample {
@@ -151,17 +154,17 @@ fn camera_slot(
         lens: Vec2::new(lens_x, lens_y),
         time: moment.time,
     };
-    let ray = view.camera.sample_ray(&camera_sample);
+    let start = view.camera.generate_ray(&camera_sample);
     let cone = view.camera.ray_cone(camera_sample.film, view.detail_scale());
     let slot = Slot {
         pixel,
         sample,
         filter_weight: filter.weight,
-        importance: view.camera.importance(&camera_sample),
-        time: ray.time,
+        importance: start.map_or(0.0, |(_, importance)| importance),
+        time: view.camera.scene_time(moment.time),
         lambda: moment.wavelengths(scene.color()),
         l: SampledSpectrum::ZERO,
         broken: false,
     };
-    (slot, ray, cone)
+    (slot, start.map(|(ray, _)| ray), cone)
 }

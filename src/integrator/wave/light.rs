@@ -24,7 +24,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         for (slot, &stream) in streams.iter().enumerate() {
             estimator.emit(&mut stage, slot as u32, stream);
         }
-        stage.finish_batch();
+        stage.finish();
     }
 
     /// Follows light paths without camera paths to their ends: one for each slot, by its random numbers. What is then left are the slots

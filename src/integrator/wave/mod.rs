@@ -8,6 +8,7 @@
 //! Waves begin in `camera.rs` and `light.rs`, and end in `retire.rs`.
 
 mod camera;
+mod first_hit;
 mod light;
 mod retire;
 
@@ -15,6 +16,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use self::camera::Pixels;
+use self::first_hit::{FirstHits, surface_sample};
 use super::RenderStats;
 use super::lane::{Batch, NO_SLOT, Slot};
 use super::numbers::EventLanes;
@@ -48,6 +50,7 @@ pub(super) struct Wave<'s, E: Estimator> {
     spare: Vec<Batch<E::State>>,
     hits: Vec<HitPacket>,
     surfaces: SurfaceLanes,
+    first_hits: FirstHits,
     shadows: ShadowQueue<Contribution>,
     splats: ShadowQueue<SplatContribution>,
     /// What light paths have brought to the film.
@@ -73,6 +76,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             spare: Vec::new(),
             hits: Vec::new(),
             surfaces: SurfaceLanes::default(),
+            first_hits: FirstHits::default(),
             shadows: ShadowQueue::default(),
             splats: ShadowQueue::default(),
             landed: Vec::new(),
@@ -100,6 +104,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         };
         for first in samples.clone().step_by(at_once as usize) {
             let camera_rays = self.generate(&pixels, first..(first + at_once).min(samples.end));
+            self.first_hits.restart(self.slots.len(), self.film.kind());
             if E::LIGHT_PATHS {
                 self.emit();
                 self.finish_pending();
@@ -124,6 +129,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let mut stage = Stage {
             scene: self.scene,
             view: self.view,
+            estimator: self.estimator,
             mode,
             depth,
             slots: &mut self.slots,
@@ -133,6 +139,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             landed: &mut self.landed,
             pending: &mut self.pending,
             spare: &mut self.spare,
+            passed: Batch::default(),
             next: Batch::default(),
         };
         stage.start_batch(next);
@@ -141,11 +148,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// Finds what the ray of each lane hits.
     fn trace(&mut self, batch: &Batch<E::State>) {
-        let kind = if batch.depth == 0 && batch.mode == TransportMode::Radiance {
-            RayKind::Camera
-        } else {
-            RayKind::Bounce
-        };
+        let kind = batch.kind;
         let rays = batch.rays.packets();
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
@@ -163,6 +166,9 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
         let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
         let mut surfaces = std::mem::take(&mut self.surfaces);
+        let mut first_hits = std::mem::take(&mut self.first_hits);
+        let (view, space) = (self.view, self.gbuffer_space());
+        let is_first = first_hits.are_wanted() && batch.depth == 0 && batch.mode == TransportMode::Radiance;
         let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
         let packets = batch.rays.packets().iter().zip(&hits);
         for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
@@ -183,6 +189,10 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     cone = cone.after(si.p.distance(ray.origin));
                     si.footprint = cone.width;
                     surface = Some(&si);
+                    if is_first && !scene.is_interface(si.hit.geometry) {
+                        let slot = &stage.slots[lane.slot as usize];
+                        first_hits.set(lane.slot, surface_sample((scene, view), space, slot, &lane.stream, &si));
+                    }
                 }
                 let vertex = Vertex {
                     lane,
@@ -195,8 +205,8 @@ impl<'s, E: Estimator> Wave<'s, E> {
             }
             stage.limit_shadows(&mut stats);
         }
-        stage.finish_batch();
+        stage.finish();
         stage.flush_shadows(&mut stats);
-        (self.hits, self.stats, self.surfaces) = (hits, stats, surfaces);
+        (self.hits, self.stats, self.surfaces, self.first_hits) = (hits, stats, surfaces, first_hits);
     }
 }

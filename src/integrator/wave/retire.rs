@@ -3,9 +3,11 @@
 use std::sync::Mutex;
 
 use super::Wave;
-use crate::film::{Splat, TileSums, lock};
+use crate::desc::FilmKind;
+use crate::film::{LayerSample, Splat, TileSums, lock};
 use crate::integrator::DroppedSample;
 use crate::integrator::stage::{Estimator, Retiring};
+use crate::spectrum::SampledSpectrum;
 
 impl<E: Estimator> Wave<'_, E> {
     /// Turns slots into sensor values, and what light paths brought to the film into splats.
@@ -48,14 +50,24 @@ impl<E: Estimator> Wave<'_, E> {
 
     fn retire_slots(&mut self, sums: &mut TileSums) {
         let rect = sums.rect();
-        for slot in &self.slots {
+        let keeps_layers = self.film.kind() != FilmKind::Rgb;
+        for (index, slot) in self.slots.iter().enumerate() {
             let [x, y] = slot.pixel;
             if !rect.contains(x, y) {
                 continue;
             }
-            let rgb = slot
-                .is_good()
-                .then(|| self.view.sensor.to_rgb(slot.l * slot.importance, &slot.lambda));
+            let l = slot.l * slot.importance;
+            let rgb = slot.is_good().then(|| self.view.sensor.to_rgb(l, &slot.lambda));
+            if keeps_layers {
+                let sample = LayerSample {
+                    weight: slot.filter_weight,
+                    rgb,
+                    l: rgb.map_or(SampledSpectrum::ZERO, |_| self.view.sensor.limit(l)),
+                    lambda: &slot.lambda,
+                    surface: self.first_hits.get(index),
+                };
+                sums.add_layers(x, y, &sample);
+            }
             if !sums.add(x, y, rgb, slot.filter_weight) {
                 self.stats.drop_sample(DroppedSample {
                     pixel: slot.pixel,

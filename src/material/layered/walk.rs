@@ -1,12 +1,11 @@
 //! Walks between the layers: flights, events, and the connections of a walk to a direction outside.
 
-use std::f32::consts::{FRAC_1_PI, PI};
-
 use super::{Interlayer, Layered};
 use crate::material::argument_random::ArgumentRandom;
 use crate::material::{Density, LocalSample, TransportMode};
-use crate::math::{Frame, Vec3};
+use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::power_heuristic;
+use crate::sampling::warp::{henyey_greenstein_pdf, sample_henyey_greenstein};
 use crate::spectrum::SampledSpectrum;
 
 /// A walk: where it is, where it goes, what it carries. The coat is at `thickness`, the body at 0.
@@ -100,7 +99,7 @@ impl Layered {
     ) -> Option<()> {
         let Interlayer { thickness, g, .. } = self.interlayer;
         let light = &connection.light;
-        let phase = henyey_greenstein(walk.w.dot(-light.wi), g);
+        let phase = henyey_greenstein_pdf(walk.w.dot(-light.wi), g).0;
         let weight = connection.weight_of_light(phase);
         *sum += walk.beta
             * self.interlayer.albedo
@@ -127,9 +126,9 @@ impl Layered {
         let across = transmittance(thickness, light.wi);
         let to_and_fro = mirror * (self.coat.reflectance(light.wi.z) * across * across);
         let chains = to_and_fro.map(|r| 1.0 / (1.0 - r).max(1e-6));
-        let up = henyey_greenstein(walk.w.dot(-light.wi), g) * transmittance(thickness - walk.z, light.wi);
+        let up = henyey_greenstein_pdf(walk.w.dot(-light.wi), g).0 * transmittance(thickness - walk.z, light.wi);
         let down_direction = Vec3::new(-light.wi.x, -light.wi.y, light.wi.z);
-        let down = henyey_greenstein(walk.w.dot(down_direction), g) * transmittance(walk.z, light.wi) * across;
+        let down = henyey_greenstein_pdf(walk.w.dot(down_direction), g).0 * transmittance(walk.z, light.wi) * across;
         let scattered = walk.beta * self.interlayer.albedo * light.weight() * (1.0 / light.wi.z.abs());
         // The direct way up is counted already.
         scattered * (mirror * chains * down + (chains - SampledSpectrum::ONE) * up)
@@ -204,13 +203,10 @@ impl Layered {
     /// Draws a new direction from the phase function and returns its density.
     pub(super) fn scatter_in_medium(&self, walk: &mut Walk, random: &mut ArgumentRandom) -> f32 {
         let g = self.interlayer.g;
-        let cos = sample_henyey_greenstein(random.unit(), g);
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = (2.0 * PI * random.unit()).sin_cos();
-        let local = Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+        let local = sample_henyey_greenstein(Vec2::new(random.unit(), random.unit()), g);
         walk.w = Frame::from_normal(walk.w).to_world(local).normalize();
         walk.beta *= self.interlayer.albedo;
-        henyey_greenstein(cos, g)
+        henyey_greenstein_pdf(local.z, g).0
     }
 }
 
@@ -236,18 +232,4 @@ impl Connection {
 /// What is left of light after a flight over the height `dz` in direction `w`.
 fn transmittance(dz: f32, w: Vec3) -> f32 {
     (-(dz / w.z).abs()).exp()
-}
-
-/// The phase function of Henyey and Greenstein (1941), for the cosine of the angle by which light turns.
-fn henyey_greenstein(cos: f32, g: f32) -> f32 {
-    let denominator = (1.0 + g * g - 2.0 * g * cos).max(1e-6);
-    0.25 * FRAC_1_PI * (1.0 - g * g) / (denominator * denominator.sqrt())
-}
-
-fn sample_henyey_greenstein(u: f32, g: f32) -> f32 {
-    if g.abs() < 1e-3 {
-        return 1.0 - 2.0 * u;
-    }
-    let s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
-    ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
 }

@@ -10,6 +10,7 @@ use super::BELOW_ONE;
 mod direction;
 mod interval;
 mod octahedral;
+mod phase;
 mod plane;
 
 pub use direction::{
@@ -19,6 +20,7 @@ pub use direction::{
 };
 pub use interval::{invert_linear, invert_tent, linear_pdf, sample_linear, sample_tent, tent_pdf};
 pub use octahedral::{equal_area_square_to_sphere, invert_equal_area_square_to_sphere};
+pub use phase::{henyey_greenstein_pdf, invert_henyey_greenstein, sample_henyey_greenstein};
 pub use plane::{
     invert_regular_polygon, invert_uniform_disk, invert_uniform_triangle, regular_polygon_pdf, sample_regular_polygon,
     sample_uniform_disk, sample_uniform_triangle, uniform_disk_pdf, uniform_triangle_pdf,

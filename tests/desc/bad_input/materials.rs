@@ -6,8 +6,8 @@ use super::{Case, check};
 fn kinds_and_names() {
     let cases: [Case; 7] = [
         (
-            "WorldBegin Material @\"hair\"",
-            "the material `hair` is not supported yet",
+            "WorldBegin Material @\"subsurface\"",
+            "the material `subsurface` is not supported",
             "",
         ),
         ("WorldBegin Material @\"difuse\"", "unknown material", "`diffuse`"),

@@ -3,6 +3,7 @@
 mod lights;
 mod lists;
 mod materials;
+mod media;
 mod options;
 mod shapes;
 mod structure;

@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn options() {
-    let cases: [Case; 12] = [
+    let cases: [Case; 13] = [
         (
             "Sampler \"sobol\" \"integer pixelsamples\" @0 WorldBegin",
             "must be 1 to 16777216",
@@ -36,15 +36,24 @@ fn options() {
             "",
         ),
         ("@Option \"sead\" 1 WorldBegin", "unknown option `sead`", "`seed`"),
-        ("Integrator @\"mlt\" WorldBegin", "not supported yet", ""),
+        (
+            "Integrator @\"function\" WorldBegin",
+            "not supported: it integrates",
+            "",
+        ),
+        (
+            "Integrator @\"simpelpath\" WorldBegin",
+            "unknown integrator",
+            "`simplepath`",
+        ),
+        (
+            "@Option \"pixelstats\" \"maybe\" WorldBegin",
+            "`true` or `false`, not `\"maybe\"`",
+            "",
+        ),
         ("Sampler @\"sobl\" WorldBegin", "unknown sampler", "`sobol`"),
         ("ColorSpace @\"rec2021\" WorldBegin", "unknown color space", "`rec2020`"),
         ("@Option \"forcediffuse\" true WorldBegin", "not supported", ""),
-        (
-            "Integrator \"path\" @\"bool regularize\" true WorldBegin",
-            "`regularize`",
-            "",
-        ),
     ];
     cases.iter().for_each(check);
 }

@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn kinds_and_values() {
-    let cases: [Case; 12] = [
+    let cases: [Case; 11] = [
         (
             "WorldBegin Shape \"sphere\" \"float radius\" @\"big\"",
             "expected a finite number, found `\"big\"`",
@@ -50,11 +50,10 @@ fn kinds_and_values() {
             "shape `sphere` has no parameter `raduis`",
             "`radius`",
         ),
-        ("WorldBegin Shape \"sphere\" @\"float zmin\" 0", "parts of spheres", ""),
         ("WorldBegin Shape @\"spere\"", "unknown shape `spere`", "`sphere`"),
         (
-            "WorldBegin Shape @\"disk\" \"float radius\" 3",
-            "the shape `disk` is not supported yet",
+            "WorldBegin Shape @\"curve\" \"float width\" 3",
+            "the shape `curve` is not supported yet",
             "",
         ),
     ];
@@ -114,6 +113,76 @@ fn meshes() {
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" @\"no/such.ply\"",
             "cannot read the mesh",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn quadrics_patches_and_cages() {
+    let cases: [Case; 15] = [
+        (
+            "WorldBegin Shape \"sphere\" @\"float zmin\" 2 \"float zmax\" 3",
+            "nothing of the sphere",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"cylinder\" @\"float zmin\" 1",
+            "`zmin` and `zmax` are equal",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"cylinder\" @\"float phimax\" 0",
+            "more than 0 degrees",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"cylinder\" \"float radius\" @-1",
+            "`radius` is -1, it must be positive",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"disk\" @\"float innerradius\" 1",
+            "the hole of the disk is as large",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"disk\" \"float innerradius\" @-1",
+            "must be 0 or more",
+            "",
+        ),
+        ("WorldBegin Shape \"disk\" \"float height\" @nan", "finite", ""),
+        ("WorldBegin Shape \"disk\" @\"float zmin\" 0", "no parameter `zmin`", ""),
+        ("WorldBegin Shape @\"bilinearmesh\"", "no vertices", ""),
+        (
+            "WorldBegin Shape @\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1 2 2 2]",
+            "only one of 4 vertices needs none",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \"integer indices\" @[0 1 2]",
+            "4 integers a patch, found 3",
+            "",
+        ),
+        (
+            "WorldBegin Shape @\"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0]",
+            "this `loopsubdiv` has no `\"integer indices\"`",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"loopsubdiv\" \"integer levels\" @21 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]",
+            "`levels` is 21, it must be from 0 to 20",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" \"texture displacement\" @\"no such\"",
+            "no such",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" \"float displacement.edgelength\" @0",
+            "must be positive",
             "",
         ),
     ];

@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn structure() {
-    let cases: [Case; 24] = [
+    let cases: [Case; 22] = [
         ("@Shape \"sphere\" WorldBegin", "only after `WorldBegin`", ""),
         ("@AttributeBegin WorldBegin", "only after `WorldBegin`", ""),
         ("WorldBegin @Camera \"perspective\"", "only before `WorldBegin`", ""),
@@ -62,12 +62,6 @@ fn structure() {
             "",
         ),
         ("@TransformTimes 1 1 WorldBegin", "must come before", ""),
-        (
-            "WorldBegin @MakeNamedMedium \"a\" \"string type\" \"homogeneous\"",
-            "media",
-            "",
-        ),
-        ("WorldBegin @MediumInterface \"a\" \"\"", "media", ""),
         (
             "WorldBegin Attribute @\"sape\" \"float radius\" 1",
             "unknown target `sape`",

@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn cameras() {
-    let cases: [Case; 8] = [
+    let cases: [Case; 11] = [
         (
             "Camera \"perspective\" \"float fov\" @[ 180 ] WorldBegin",
             "between 0 and 180",
@@ -35,7 +35,18 @@ fn cameras() {
             "expected `float`",
             "",
         ),
-        ("Camera @\"spherical\" WorldBegin", "not supported yet", ""),
+        ("Camera @\"spheric\" WorldBegin", "unknown camera", "`spherical`"),
+        (
+            "Camera \"spherical\" \"string mapping\" @\"latlong\" WorldBegin",
+            "`equalarea` or `equirectangular`, not `latlong`",
+            "",
+        ),
+        ("Camera @\"realistic\" WorldBegin", "no table of lenses", ""),
+        (
+            "Camera \"realistic\" \"string lensfile\" @\"nowhere.lens\" WorldBegin",
+            "cannot be read",
+            "",
+        ),
         (
             "Camera \"perspective\" \"string name\" \"a\"\nCamera \"perspective\" \"string name\" @\"a\" WorldBegin",
             "a view `a`",
@@ -47,7 +58,7 @@ fn cameras() {
 
 #[test]
 fn films_and_filters() {
-    let cases: [Case; 11] = [
+    let cases: [Case; 14] = [
         (
             "Film \"rgb\" \"integer xresolution\" @0 WorldBegin",
             "between 1 and",
@@ -93,7 +104,22 @@ fn films_and_filters() {
             "`radiance` or `irradiance`, not `flux`",
             "",
         ),
-        ("Film @\"gbuffer\" WorldBegin", "not supported yet", ""),
+        ("Film @\"gbufer\" WorldBegin", "unknown film", "`gbuffer`"),
+        (
+            "Film \"gbuffer\" \"string coordinatesystem\" @\"wolrd\" WorldBegin",
+            "`camera` or `world`, not `wolrd`",
+            "`world`",
+        ),
+        (
+            "Film \"spectral\" \"integer nbuckets\" @0 WorldBegin",
+            "between 1 and 1024",
+            "",
+        ),
+        (
+            "Film \"spectral\" @\"float lambdamax\" 360 WorldBegin",
+            "more than `lambdamin`",
+            "",
+        ),
         ("PixelFilter @\"gausian\" WorldBegin", "unknown filter", "`gaussian`"),
     ];
     cases.iter().for_each(check);

@@ -1,0 +1,522 @@
+//! Parts of spheres, cylinders and disks, in double precision from the parser to the hit. They are pbrt's, with its texture
+//! coordinates: u goes once around the axis as far as the shape does, v along it (of a disk, from the rim inward).
+
+use std::f64::consts::TAU;
+
+use super::shape::LineHits;
+use super::sphere::line_roots;
+use super::surface::LocalSurface;
+use super::triangle::LEAST_ERROR;
+use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec2, DVec3, Vec2, Vec3};
+
+/// A part of a surface of revolution around the z axis of its object space, from angle 0 at the x axis on. An affine transform
+/// may stretch it; it does not move by itself (an instance can move it).
+#[derive(Clone, Debug)]
+pub struct Quadric {
+    kind: QuadricKind,
+    /// Angle that it goes around, in (0, 2π].
+    phi_max: f64,
+    world_from_object: DAffine3,
+    object_from_world: DAffine3,
+    flip_normal: bool,
+    /// Diagonal of its box.
+    size: f64,
+}
+
+/// Which surface it is a part of. Object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum QuadricKind {
+    /// The part of a sphere around the origin between two heights.
+    Sphere {
+        /// Positive.
+        radius: f64,
+        /// The lower and the upper end, within the sphere; ascending.
+        z: [f64; 2],
+    },
+    /// A cylinder around the z axis, without lids.
+    Cylinder {
+        /// Positive.
+        radius: f64,
+        /// The lower and the upper end; ascending.
+        z: [f64; 2],
+    },
+    /// A disk, or a ring, perpendicular to the z axis.
+    Disk {
+        /// Where it crosses the z axis.
+        height: f64,
+        /// Positive.
+        radius: f64,
+        /// Of its hole, less than `radius`; may be 0.
+        inner_radius: f64,
+    },
+}
+
+impl QuadricKind {
+    /// Whether its numbers are finite and it has an area.
+    fn is_valid(&self) -> bool {
+        let (numbers, has_extent) = match *self {
+            Self::Sphere { radius, z: [low, high] } => (
+                [radius, low, high],
+                radius > 0.0 && -radius <= low && low < high && high <= radius,
+            ),
+            Self::Cylinder { radius, z: [low, high] } => ([radius, low, high], radius > 0.0 && low < high),
+            Self::Disk {
+                height,
+                radius,
+                inner_radius,
+            } => (
+                [height, radius, inner_radius],
+                0.0 <= inner_radius && inner_radius < radius,
+            ),
+        };
+        has_extent && numbers.iter().all(|x| x.is_finite())
+    }
+
+    /// The greatest distance from the axis, and the least and greatest height.
+    fn extent(&self) -> (f64, [f64; 2]) {
+        match *self {
+            Self::Sphere { radius, z: [low, high] } => {
+                let nearest = 0.0_f64.clamp(low, high);
+                ((radius * radius - nearest * nearest).sqrt(), [low, high])
+            }
+            Self::Cylinder { radius, z } => (radius, z),
+            Self::Disk { height, radius, .. } => (radius, [height; 2]),
+        }
+    }
+}
+
+impl Quadric {
+    /// The part within the angle `phi_max` (radians, in (0, 2π]); `None` if that is no surface, or the transform is singular.
+    pub fn new(kind: QuadricKind, phi_max: f64, world_from_object: DAffine3) -> Option<Self> {
+        let object_from_world = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
+        if !(kind.is_valid() && phi_max > 0.0 && phi_max <= TAU) {
+            return None;
+        }
+        let mut quadric = Self {
+            kind,
+            phi_max,
+            world_from_object,
+            object_from_world,
+            flip_normal: false,
+            size: 0.0,
+        };
+        quadric.size = f64::from(quadric.bounds().extent().length());
+        Some(quadric)
+    }
+
+    /// With the geometric normal on the other side: that towards the axis, and of a disk that of negative z.
+    #[must_use]
+    pub fn with_flipped_normal(mut self, flip: bool) -> Self {
+        self.flip_normal = flip;
+        self
+    }
+
+    /// This one, placed by another transform after its own; `None` if the product is singular.
+    pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
+        let placed = Self::new(self.kind, self.phi_max, *transform * self.world_from_object)?;
+        Some(placed.with_flipped_normal(self.flip_normal))
+    }
+
+    /// Which surface it is a part of.
+    pub fn kind(&self) -> QuadricKind {
+        self.kind
+    }
+
+    /// World space (or that of the group) to object space.
+    pub fn object_from_world(&self) -> &DAffine3 {
+        &self.object_from_world
+    }
+
+    /// A box around it; as if it went all the way around.
+    pub fn bounds(&self) -> Bounds3 {
+        let (radius, z) = self.kind.extent();
+        let m = self.world_from_object.matrix3;
+        let across = DVec2::new(radius, radius);
+        // The support of an ellipse along an axis of the world.
+        let half = DVec3::from_array([0, 1, 2].map(|i| (across * DVec2::new(m.x_axis[i], m.y_axis[i])).length()));
+        let center = self.world_from_object.translation;
+        let ends = z.map(|z| center + m.z_axis * z);
+        let (mut min, mut max) = (ends[0].min(ends[1]) - half, ends[0].max(ends[1]) + half);
+        if let QuadricKind::Sphere { radius, .. } = self.kind {
+            let rows = m.transpose();
+            let half = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()) * radius;
+            (min, max) = (min.max(center - half), max.min(center + half));
+        }
+        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
+        Bounds3 {
+            min: outward(min, f32::next_down),
+            max: outward(max, f32::next_up),
+        }
+    }
+
+    /// Where the infinite line of a ray meets it.
+    #[inline]
+    pub fn intersect(&self, origin: DVec3, direction: DVec3) -> LineHits {
+        let o = self.object_from_world.transform_point3(origin);
+        let d = self.object_from_world.transform_vector3(direction);
+        let Some([a, b]) = self.whole(o, d) else {
+            return LineHits::NONE;
+        };
+        let keep = |t: f64| Some(t).filter(|&t| self.holds(o + d * t));
+        LineHits::new(keep(a), keep(b))
+    }
+
+    /// Where a line of object space meets the whole surface; twice the same, if once.
+    #[inline]
+    fn whole(&self, o: DVec3, d: DVec3) -> Option<[f64; 2]> {
+        let flat = DVec3::new(1.0, 1.0, 0.0);
+        match self.kind {
+            QuadricKind::Sphere { radius, .. } => line_roots(o, d, radius),
+            QuadricKind::Cylinder { radius, .. } => line_roots(o * flat, d * flat, radius),
+            QuadricKind::Disk { height, .. } => {
+                let t = (height - o.z) / d.z;
+                t.is_finite().then_some([t, f64::NAN])
+            }
+        }
+    }
+
+    /// Whether a point of the whole surface is on this part of it.
+    #[inline]
+    fn holds(&self, p: DVec3) -> bool {
+        let is_between = match self.kind {
+            QuadricKind::Sphere { radius, z: [low, high] } => {
+                (low <= -radius || p.z >= low) && (high >= radius || p.z <= high)
+            }
+            QuadricKind::Cylinder { z: [low, high], .. } => (low..=high).contains(&p.z),
+            QuadricKind::Disk {
+                radius, inner_radius, ..
+            } => {
+                let r2 = p.truncate().length_squared();
+                r2 <= radius * radius && r2 >= inner_radius * inner_radius
+            }
+        };
+        is_between && (self.phi_max >= TAU || angle(p) <= self.phi_max)
+    }
+
+    /// A point near the surface, moved onto it.
+    fn onto(&self, p: DVec3) -> DVec3 {
+        match self.kind {
+            QuadricKind::Sphere { radius, .. } => p.normalize() * radius,
+            QuadricKind::Cylinder { radius, .. } => {
+                let across = p.truncate();
+                (across * (radius / across.length())).extend(p.z)
+            }
+            QuadricKind::Disk { height, .. } => p.truncate().extend(height),
+        }
+    }
+
+    /// The unit normal at a point, object space, not flipped.
+    fn normal(&self, p: DVec3) -> DVec3 {
+        match self.kind {
+            QuadricKind::Sphere { .. } => p.normalize(),
+            QuadricKind::Cylinder { .. } => p.truncate().normalize().extend(0.0),
+            QuadricKind::Disk { .. } => DVec3::Z,
+        }
+    }
+
+    /// From the angle and the point to texture coordinates.
+    fn uv(&self, phi: f64, p: DVec3) -> Vec2 {
+        let v = match self.kind {
+            QuadricKind::Sphere { radius, z } => {
+                let [low, high] = z.map(|z| polar(z, radius));
+                (polar(p.z, radius) - low) / (high - low)
+            }
+            QuadricKind::Cylinder { z: [low, high], .. } => (p.z - low) / (high - low),
+            QuadricKind::Disk {
+                radius, inner_radius, ..
+            } => (radius - p.truncate().length()) / (radius - inner_radius),
+        };
+        DVec2::new(phi / self.phi_max, v)
+            .clamp(DVec2::ZERO, DVec2::ONE)
+            .as_vec2()
+    }
+
+    /// The derivatives of a point, object space, by its texture coordinates.
+    fn derivatives(&self, p: DVec3) -> [DVec3; 2] {
+        let dpdu = DVec3::new(-p.y, p.x, 0.0) * self.phi_max;
+        let from_axis = p.truncate().length();
+        let azimuth = p.truncate() / from_axis.max(f64::MIN_POSITIVE);
+        let dpdv = match self.kind {
+            QuadricKind::Sphere { radius, z } => {
+                let [low, high] = z.map(|z| polar(z, radius));
+                (azimuth * p.z).extend(-from_axis) * (high - low)
+            }
+            QuadricKind::Cylinder { z: [low, high], .. } => DVec3::Z * (high - low),
+            QuadricKind::Disk {
+                radius, inner_radius, ..
+            } => (azimuth * (inner_radius - radius)).extend(0.0),
+        };
+        [dpdu, dpdv]
+    }
+
+    /// The surface where a ray meets it at `tnear` or behind, or nearly does.
+    pub(super) fn surface(&self, origin: DVec3, direction: DVec3, tnear: f64) -> LocalSurface {
+        let o = self.object_from_world.transform_point3(origin);
+        let d = self.object_from_world.transform_vector3(direction);
+        // Where a backend saw a hit through an instance's rounded transform: of the whole surface, or the point nearest to the axis.
+        let t = self.intersect(origin, direction).from(tnear).unwrap_or_else(|| {
+            let [a, b] = self.whole(o, d).unwrap_or([f64::NAN; 2]);
+            let whole = LineHits::new(Some(a).filter(|t| !t.is_nan()), Some(b).filter(|t| !t.is_nan()));
+            whole.from(tnear).unwrap_or(-o.dot(d) / d.length_squared())
+        });
+        let p = self.onto(o + d * t);
+        let [dpdu, dpdv] = self
+            .derivatives(p)
+            .map(|v| self.world_from_object.transform_vector3(v).as_vec3());
+        let ng = self.world_normal(p);
+        LocalSurface {
+            p: self.world_from_object.transform_point3(p),
+            error: self.error(),
+            ng,
+            ns: ng.as_vec3(),
+            dpdu,
+            dpdv,
+            uv: self.uv(angle(p), p),
+        }
+    }
+
+    /// How far from a point a backend may see the surface, beside the rounding of the point: its test is in double precision.
+    pub fn error(&self) -> f64 {
+        LEAST_ERROR * self.size
+    }
+
+    fn world_normal(&self, p: DVec3) -> DVec3 {
+        let normal = (self.object_from_world.matrix3.transpose() * self.normal(p)).normalize();
+        if self.flip_normal { -normal } else { normal }
+    }
+
+    /// The point for `u` in [0, 1)², uniform by area in object space.
+    pub fn sample(&self, u: Vec2) -> QuadricPoint {
+        let u = u.as_dvec2();
+        let phi = u.x * self.phi_max;
+        let (sin, cos) = phi.sin_cos();
+        let at = |from_axis: f64, z: f64| DVec3::new(from_axis * cos, from_axis * sin, z);
+        let p = match self.kind {
+            QuadricKind::Sphere { radius, z: [low, high] } => {
+                let z = low + (high - low) * u.y;
+                at((radius * radius - z * z).max(0.0).sqrt(), z)
+            }
+            QuadricKind::Cylinder { radius, z: [low, high] } => at(radius, low + (high - low) * u.y),
+            QuadricKind::Disk {
+                height,
+                radius,
+                inner_radius,
+            } => {
+                let (outer, inner) = (radius * radius, inner_radius * inner_radius);
+                at((outer + (inner - outer) * u.y).sqrt(), height)
+            }
+        };
+        QuadricPoint {
+            p: self.world_from_object.transform_point3(p),
+            ng: self.world_normal(p),
+            uv: self.uv(phi, p),
+            pdf: self.density(p),
+        }
+    }
+
+    /// The density by area, in the world, of [`Quadric::sample`] for a point of the surface.
+    pub fn pdf(&self, p: DVec3) -> f64 {
+        self.density(self.object_from_world.transform_point3(p))
+    }
+
+    /// The same for a point of object space: areas grow by |det M| |M⁻ᵀ n|.
+    fn density(&self, p: DVec3) -> f64 {
+        let normal = self.object_from_world.matrix3.transpose() * self.normal(p);
+        let growth = self.world_from_object.matrix3.determinant().abs() * normal.length();
+        1.0 / (self.object_area() * growth)
+    }
+
+    fn object_area(&self) -> f64 {
+        self.phi_max
+            * match self.kind {
+                QuadricKind::Sphere { radius, z: [low, high] } | QuadricKind::Cylinder { radius, z: [low, high] } => {
+                    radius * (high - low)
+                }
+                QuadricKind::Disk {
+                    radius, inner_radius, ..
+                } => 0.5 * (radius - inner_radius) * (radius + inner_radius),
+            }
+    }
+
+    /// Its area in the world, one side: by the midpoint rule, which is exact where the transform scales evenly.
+    pub fn area(&self) -> f64 {
+        const STEPS: usize = 64;
+        let area = |i: usize| {
+            let u = (Vec2::new((i % STEPS) as f32, (i / STEPS) as f32) + 0.5) / STEPS as f32;
+            1.0 / self.sample(u).pdf
+        };
+        (0..STEPS * STEPS).map(area).sum::<f64>() / (STEPS * STEPS) as f64
+    }
+}
+
+/// A sampled point of a [`Quadric`], world space.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadricPoint {
+    /// The point.
+    pub p: DVec3,
+    /// Unit geometric normal.
+    pub ng: DVec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Density by area.
+    pub pdf: f64,
+}
+
+/// The angle of a point around the z axis, in [0, 2π).
+#[inline]
+fn angle(p: DVec3) -> f64 {
+    let phi = p.y.atan2(p.x);
+    if phi < 0.0 { phi + TAU } else { phi }
+}
+
+/// The angle from the z axis at a height of a sphere.
+fn polar(z: f64, radius: f64) -> f64 {
+    (z / radius).clamp(-1.0, 1.0).acos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DQuat;
+    use std::f64::consts::PI;
+
+    fn place() -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            DVec3::new(2.0, 0.5, -1.5),
+            DQuat::from_rotation_x(0.7) * DQuat::from_rotation_z(0.4),
+            DVec3::new(1.0, -2.0, 3.0),
+        )
+    }
+
+    fn all() -> Vec<Quadric> {
+        let z = [-0.5, 0.75];
+        [
+            (QuadricKind::Sphere { radius: 1.0, z }, 2.0),
+            (
+                QuadricKind::Sphere {
+                    radius: 1.0,
+                    z: [-1.0, 1.0],
+                },
+                TAU,
+            ),
+            (QuadricKind::Cylinder { radius: 0.5, z }, 4.0),
+            (QuadricKind::Cylinder { radius: 0.5, z }, TAU),
+            (
+                QuadricKind::Disk {
+                    height: 0.25,
+                    radius: 1.5,
+                    inner_radius: 0.5,
+                },
+                5.0,
+            ),
+            (
+                QuadricKind::Disk {
+                    height: 0.0,
+                    radius: 1.0,
+                    inner_radius: 0.0,
+                },
+                TAU,
+            ),
+        ]
+        .into_iter()
+        .map(|(kind, phi_max)| Quadric::new(kind, phi_max, place()).unwrap())
+        .collect()
+    }
+
+    #[test]
+    fn sampled_points_are_met_and_have_the_same_surface() {
+        for quadric in all() {
+            for i in 0..400 {
+                let u = Vec2::new((i % 20) as f32 + 0.5, (i / 20) as f32 + 0.5) / 20.0;
+                let sample = quadric.sample(u);
+                let direction = DVec3::new(0.3, -0.8, 0.55);
+                let origin = sample.p - direction * 7.0;
+                let hits = quadric.intersect(origin, direction);
+                assert!(hits.iter().any(|t| (t - 7.0).abs() < 1e-9), "{quadric:?} {u} {hits:?}");
+                let surface = quadric.surface(origin, direction, 7.0 - 1e-9);
+                assert!((surface.p - sample.p).length() < 1e-9);
+                assert!(surface.ng.dot(sample.ng) > 1.0 - 1e-9);
+                assert!((surface.uv - sample.uv).length() < 1e-5);
+                assert!((quadric.pdf(surface.p) / sample.pdf - 1.0).abs() < 1e-9);
+                // The cross product of the derivatives is along the normal, but for a transform that mirrors.
+                let cross = surface.dpdu.cross(surface.dpdv).as_dvec3().normalize();
+                assert!(cross.dot(surface.ng) < -1.0 + 1e-5, "{quadric:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn areas_are_the_known_ones() {
+        let scale = DAffine3::from_scale(DVec3::splat(2.0));
+        let area = |kind, phi_max| Quadric::new(kind, phi_max, scale).unwrap().area() / 4.0;
+        let disk = QuadricKind::Disk {
+            height: 3.0,
+            radius: 2.0,
+            inner_radius: 1.0,
+        };
+        assert!((area(disk, PI) / (1.5 * PI) - 1.0).abs() < 1e-12);
+        let cylinder = QuadricKind::Cylinder {
+            radius: 0.5,
+            z: [-1.0, 2.0],
+        };
+        assert!((area(cylinder, TAU) / (3.0 * PI) - 1.0).abs() < 1e-12);
+        let sphere = QuadricKind::Sphere {
+            radius: 1.0,
+            z: [0.0, 1.0],
+        };
+        assert!((area(sphere, TAU) / TAU - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn boxes_hold_the_surface_and_touch_it() {
+        for quadric in all() {
+            let bounds = quadric.bounds();
+            let mut seen = Bounds3::EMPTY;
+            for i in 0..10_000 {
+                let p = quadric
+                    .sample(Vec2::new((i % 100) as f32, (i / 100) as f32) / 99.0)
+                    .p
+                    .as_vec3();
+                assert!(p.cmpge(bounds.min).all() && p.cmple(bounds.max).all(), "{quadric:?}");
+                seen = seen.grow(p);
+            }
+            if quadric.phi_max >= TAU {
+                assert!((seen.extent() / bounds.extent()).min_element() > 0.99, "{quadric:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_surface_is_refused() {
+        let new = |kind, phi| Quadric::new(kind, phi, DAffine3::IDENTITY);
+        let cylinder = |radius, z| QuadricKind::Cylinder { radius, z };
+        assert!(new(cylinder(1.0, [0.0, 1.0]), TAU).is_some());
+        for (kind, phi) in [
+            (cylinder(0.0, [0.0, 1.0]), TAU),
+            (cylinder(1.0, [1.0, 1.0]), TAU),
+            (cylinder(1.0, [0.0, f64::NAN]), TAU),
+            (cylinder(1.0, [0.0, f64::INFINITY]), TAU),
+            (cylinder(1.0, [0.0, 1.0]), 0.0),
+            (cylinder(1.0, [0.0, 1.0]), 7.0),
+            (
+                QuadricKind::Sphere {
+                    radius: 1.0,
+                    z: [-2.0, 0.0],
+                },
+                TAU,
+            ),
+            (
+                QuadricKind::Disk {
+                    height: 0.0,
+                    radius: 1.0,
+                    inner_radius: 1.0,
+                },
+                TAU,
+            ),
+        ] {
+            assert!(new(kind, phi).is_none(), "{kind:?} {phi}");
+        }
+        let flat = DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0));
+        assert!(Quadric::new(cylinder(1.0, [0.0, 1.0]), TAU, flat).is_none());
+    }
+}

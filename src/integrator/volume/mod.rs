@@ -1,0 +1,278 @@
+//! Path tracing through participating media: between surfaces a path may be scattered by what fills the space there.
+//!
+//! At each event, of a surface or of a medium, light is looked for as `path` does it: by points of lights, whose light is weakened on its
+//! way (`shadows.rs`), and by the direction that the path takes anyway. How far a path flies is drawn by its optical depth
+//! (`flight.rs`). Emission of media is added in closed form along each flight, not only where it ends. A boundary without a surface
+//! does not count as an event.
+
+mod flight;
+mod shadows;
+
+use flight::{Arrival, Chances, Flight};
+use shadows::{LightOnItsWay, MediaShadows};
+
+use super::RenderStats;
+use super::direct::{Origin, Viewpoint};
+use super::lane::{Lane, Slot};
+use super::numbers::{DETECTOR_GROUP, EventNumbers};
+use super::path::PathIntegrator;
+use super::shadow::shadow_ray;
+use super::stage::{Estimator, Stage, Vertex};
+use crate::desc::Strategy;
+use crate::geometry::{Ray, RayCone, SurfaceInteraction};
+use crate::light::LightEnd;
+use crate::material::{Bsdf, Density, TransportMode};
+use crate::math::Vec3;
+use crate::medium::{HenyeyGreenstein, MediumId};
+use crate::scene::{Scene, View};
+use crate::spectrum::SampledSpectrum;
+
+/// [`PathIntegrator`] in a scene with media.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VolumePath(pub PathIntegrator);
+
+/// What a path carries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Traveller {
+    origin: Origin,
+    /// What its ray goes through.
+    medium: Option<MediumId>,
+    /// None before its first stage.
+    flight: Option<Flight>,
+}
+
+type TravelLane = Lane<Traveller>;
+type VolumeStage<'a, 's> = Stage<'a, 's, VolumePath>;
+
+/// What scatters a path, and where.
+#[derive(Clone, Copy)]
+enum Scatterer<'a> {
+    Surface(&'a SurfaceInteraction, &'a Bsdf<'a>),
+    Medium { p: Vec3, wo: Vec3, phase: HenyeyGreenstein },
+}
+
+/// A scattering event.
+#[derive(Clone, Copy)]
+struct Event<'a> {
+    /// The path; of a split one, with its part of the throughput.
+    lane: &'a TravelLane,
+    flight: Flight,
+    by: Scatterer<'a>,
+    numbers: &'a EventNumbers,
+    time: f32,
+    /// The cone of the ray from here on.
+    cone: RayCone,
+}
+
+impl Estimator for VolumePath {
+    type State = Traveller;
+    type Memory<'s> = MediaShadows;
+
+    fn camera_state(&self, view: &View, _ray: &Ray) -> Traveller {
+        Traveller {
+            origin: Origin::Delta,
+            medium: view.medium,
+            flight: None,
+        }
+    }
+
+    fn own_shadows(memory: &MediaShadows) -> usize {
+        memory.len()
+    }
+
+    fn flush_own_shadows(&self, scene: &Scene, memory: &mut MediaShadows, slots: &mut [Slot], stats: &mut RenderStats) {
+        let (traced, elapsed) = memory.flush(scene, &self.0.direct_light(), slots);
+        stats.shadow_rays += traced;
+        stats.backend_time += elapsed;
+    }
+
+    fn shade<'s>(&self, stage: &mut VolumeStage<'_, 's>, vertex: Vertex<'_, Traveller>) {
+        let Vertex { ray, numbers, cone, .. } = vertex;
+        let scene = stage.scene;
+        let mut lane = *vertex.lane;
+        let slot = &mut stage.slots[lane.slot as usize];
+        let mut flight = lane.state.flight.unwrap_or_else(|| start_flight(scene, slot, &lane));
+        let distance = vertex.surface.map_or(f32::INFINITY, |si| si.p.distance(ray.origin));
+        if let Some(id) = lane.state.medium {
+            let medium = scene.medium(id);
+            let at = medium.at(&slot.lambda);
+            slot.l += lane.beta * at.emission(distance);
+            match (flight.fly(medium, &at, distance, numbers.connections), medium.phase) {
+                (Arrival::Collision(t, factor), Some(phase)) => {
+                    lane.beta *= factor;
+                    let (p, wo) = (ray.origin + ray.direction * t, -ray.direction);
+                    let event = Event {
+                        lane: &lane,
+                        flight,
+                        by: Scatterer::Medium { p, wo, phase },
+                        numbers,
+                        time: ray.time,
+                        cone: lane.cone.after(t),
+                    };
+                    return self.scatter(stage, &event);
+                }
+                (Arrival::Through(factor) | Arrival::Collision(_, factor), _) => lane.beta *= factor,
+            }
+            if lane.beta.is_black() {
+                return;
+            }
+        }
+        let direct = self.0.direct_light();
+        let origin = lane.state.origin.after(flight.chances.passed());
+        let Some(si) = vertex.surface else {
+            slot.l += lane.beta * direct.environment(scene, &origin, ray, &slot.lambda);
+            return;
+        };
+        if scene.is_interface(si.hit.geometry) {
+            lane.state.medium = scene.medium_beyond(si, ray.direction, lane.state.medium);
+            lane.state.flight = Some(flight);
+            lane.cone = cone;
+            return stage.pass_on(&lane, &si.rest_of_ray(ray));
+        }
+        if let Some(le) = direct.emission(scene, &origin, si, &slot.lambda) {
+            slot.l += lane.beta * le;
+        }
+        if self.0.max_depth == Some(stage.depth) {
+            return;
+        }
+        let bsdf = scene.material(si.hit.geometry).bsdf(si, &mut slot.lambda);
+        let event = Event {
+            lane: &lane,
+            flight,
+            by: Scatterer::Surface(si, &bsdf),
+            numbers,
+            time: ray.time,
+            cone,
+        };
+        self.scatter(stage, &event);
+    }
+}
+
+impl VolumePath {
+    /// Goes on from a scattering event, once or, where the path splits, several times.
+    fn scatter(&self, stage: &mut VolumeStage<'_, '_>, event: &Event<'_>) {
+        if self.0.max_depth == Some(stage.depth) {
+            return;
+        }
+        let lane = event.lane;
+        let is_delta = matches!(event.by, Scatterer::Surface(_, bsdf) if bsdf.is_delta());
+        if self.0.splitting == 1 || lane.split || is_delta {
+            self.look_for_light(stage, event);
+            return self.go_on(stage, event);
+        }
+        for branch in 0..self.0.splitting {
+            let stream = lane.stream.branch(branch);
+            let lane = &Lane {
+                split: true,
+                stream,
+                beta: lane.beta * (1.0 / self.0.splitting as f32),
+                ..*lane
+            };
+            let numbers = &EventNumbers::draw(&stream, stage.depth);
+            let event = &Event {
+                lane,
+                numbers,
+                ..*event
+            };
+            self.look_for_light(stage, event);
+            self.go_on(stage, event);
+        }
+    }
+
+    /// A point of a light, whose light starts on its way to the event.
+    fn look_for_light(&self, stage: &mut VolumeStage<'_, '_>, event: &Event<'_>) {
+        let is_delta = matches!(event.by, Scatterer::Surface(_, bsdf) if bsdf.is_delta());
+        if self.0.strategy == Strategy::Bsdf || is_delta {
+            return;
+        }
+        let Event {
+            lane, numbers, time, ..
+        } = *event;
+        let (scene, direct) = (stage.scene, self.0.direct_light());
+        let lambda = &stage.slots[lane.slot as usize].lambda;
+        let found = match event.by {
+            Scatterer::Surface(si, bsdf) => direct.look_from_surface(scene, si, bsdf, numbers, lambda),
+            Scatterer::Medium { p, wo, phase } => {
+                let from = Viewpoint { p, n: Vec3::ZERO, time };
+                direct.look(scene, &from, numbers, lambda, |wi| {
+                    let pdf = phase.pdf(wo, wi);
+                    Some((SampledSpectrum::splat(pdf.0), pdf))
+                })
+            }
+        };
+        let Some(found) = found else { return };
+        let wi = found.sample.wi;
+        let (ray, medium) = match event.by {
+            Scatterer::Surface(si, _) => (
+                shadow_ray(si, wi, found.sample.end),
+                scene.medium_beyond(si, wi, lane.state.medium),
+            ),
+            Scatterer::Medium { p, .. } => (ray_through_space(p, wi, found.sample.end, time), lane.state.medium),
+        };
+        if !ray.is_valid() {
+            stage.slot(lane).broken = true;
+            return;
+        }
+        let light = LightOnItsWay {
+            slot: lane.slot,
+            value: lane.beta * found.value,
+            medium,
+            chances: event.flight.scattered().chances,
+            pdf_light: found.pdf_light,
+            pdf_scatter: found.pdf_scatter,
+        };
+        stage.memory.push(&ray, light);
+    }
+
+    /// Draws where the path goes from an event.
+    fn go_on(&self, stage: &mut VolumeStage<'_, '_>, event: &Event<'_>) {
+        let Event { lane, numbers, .. } = *event;
+        let mut next = Lane {
+            cone: event.cone,
+            ..*lane
+        };
+        next.state.flight = Some(event.flight.scattered());
+        let ray = match event.by {
+            Scatterer::Surface(si, bsdf) => {
+                let sample = bsdf.sample_f(si.wo, numbers.lobe, numbers.bsdf, TransportMode::Radiance);
+                let Some(sample) = sample else { return };
+                next.beta *= sample.weight();
+                next.eta_scale *= sample.eta * sample.eta;
+                next.state.origin = match sample.density {
+                    Density::Delta(_) => Origin::Delta,
+                    Density::Continuous(pdf) => Origin::Sampled { p: si.p, n: si.ns, pdf },
+                };
+                next.state.medium = stage.scene.medium_beyond(si, sample.wi, lane.state.medium);
+                si.spawn_ray(sample.wi)
+            }
+            Scatterer::Medium { p, wo, phase } => {
+                // The value is the density: the weight is 1.
+                let (wi, pdf) = phase.sample(wo, numbers.bsdf);
+                next.state.origin = Origin::Sampled { p, n: Vec3::ZERO, pdf };
+                Ray::new(p, wi, event.time)
+            }
+        };
+        if self.0.survives(&mut next, stage.depth, numbers) {
+            stage.go_on(&next, &ray);
+        }
+    }
+}
+
+/// The ray from a point in space in direction `wi` to where a light was sampled.
+fn ray_through_space(p: Vec3, wi: Vec3, end: LightEnd, time: f32) -> Ray {
+    match end {
+        LightEnd::Point { p: to, error, ng } => Ray::between(p, to, error, ng, time),
+        LightEnd::Infinity => Ray::new(p, wi, time),
+    }
+}
+
+/// The first flight of a path.
+fn start_flight(scene: &Scene, slot: &mut Slot, lane: &TravelLane) -> Flight {
+    // A path on which glass may part the wavelengths later is one of its hero from the start: who decides on flights until then would
+    // have had other wavelengths with it than who decides after.
+    if scene.disperses() {
+        slot.lambda.terminate_secondary();
+    }
+    let [u, ..] = lane.stream.draw4(DETECTOR_GROUP);
+    Flight::start(Chances::start(scene.color(), &slot.lambda, u))
+}

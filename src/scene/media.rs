@@ -1,0 +1,40 @@
+//! Media as described to media as evaluated.
+
+use super::spectra::SpectrumCompiler;
+use crate::desc::{self, MediumDesc, MediumInterfaceDesc};
+use crate::medium::{HenyeyGreenstein, HomogeneousMedium, MediumId};
+
+/// What is on the two sides of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MediumInterface {
+    /// Where the geometric normal points away from.
+    pub interior: Option<MediumId>,
+    /// Where it points to.
+    pub exterior: Option<MediumId>,
+}
+
+/// The medium of a description's number.
+pub(super) fn id(id: desc::MediumId) -> MediumId {
+    MediumId(id.0)
+}
+
+pub(super) fn interface(desc: &MediumInterfaceDesc) -> MediumInterface {
+    MediumInterface {
+        interior: desc.interior.map(id),
+        exterior: desc.exterior.map(id),
+    }
+}
+
+pub(super) fn compile(desc: &MediumDesc, spectra: SpectrumCompiler) -> HomogeneousMedium {
+    let scale = desc.scale as f32;
+    let sigma_s = spectra.unbounded(&desc.sigma_s).scaled(scale);
+    HomogeneousMedium {
+        sigma_a: spectra.unbounded(&desc.sigma_a).scaled(scale),
+        phase: (!sigma_s.is_black()).then_some(HenyeyGreenstein { g: desc.g as f32 }),
+        sigma_s,
+        le: desc
+            .le
+            .as_ref()
+            .map(|le| spectra.emission(Some(le)).scaled(desc.le_scale as f32)),
+    }
+}
