@@ -2,8 +2,8 @@
 
 use super::sides::Sides;
 use super::{
-    Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Plastic, Principled,
-    ThinDielectric, Tinted,
+    Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Plastic,
+    Principled, ThinDielectric, Tinted,
 };
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
@@ -159,6 +159,7 @@ pub enum Lobe<'a> {
     Principled(Principled<'a>),
     Measured(Measured<'a>),
     Plastic(Plastic<'a>),
+    Burley(Burley),
     Tinted(Tinted),
     Hair(Hair),
 }
@@ -184,6 +185,7 @@ impl Lobe<'_> {
             Self::Principled(lobe) => lobe.eval(wo, wi, mode),
             Self::Measured(lobe) => lobe.eval(wo, wi),
             Self::Plastic(lobe) => lobe.eval(wo, wi),
+            Self::Burley(lobe) => lobe.eval(wo, wi, mode),
             Self::Tinted(lobe) => lobe.eval(wo, wi, mode),
             Self::Hair(lobe) => lobe.eval(wo, wi),
             Self::Conductor(lobe) => lobe.eval(wo, wi),
@@ -210,6 +212,7 @@ impl Lobe<'_> {
             Self::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Measured(lobe) => lobe.sample_f(wo, u),
             Self::Plastic(lobe) => lobe.sample_f(wo, u_lobe, u),
+            Self::Burley(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Tinted(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Hair(lobe) => lobe.sample_f(wo, u_lobe, u),
             Self::Conductor(lobe) => lobe.sample_f(wo, u),
@@ -268,6 +271,7 @@ impl<'a> Bsdf<'a> {
             | Lobe::DiffuseTransmission(_)
             | Lobe::Principled(_)
             | Lobe::Plastic(_)
+            | Lobe::Burley(_)
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,
             Lobe::ThinDielectric(_) => true,
@@ -296,6 +300,7 @@ impl<'a> Bsdf<'a> {
                 | Lobe::Plastic(_)
                 | Lobe::Measured(_) => false,
                 Lobe::Tinted(lobe) => lobe.transmits(),
+                Lobe::Burley(lobe) => lobe.transmits(),
                 Lobe::DiffuseTransmission(_)
                 | Lobe::Dielectric(_)
                 | Lobe::ThinDielectric(_)
@@ -324,6 +329,7 @@ impl<'a> Bsdf<'a> {
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,
             Lobe::Tinted(lobe) => lobe.is_specular(),
+            Lobe::Burley(lobe) => lobe.is_specular(),
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_specular(),
@@ -354,6 +360,7 @@ impl<'a> Bsdf<'a> {
             | Lobe::ThinDielectric(_)
             | Lobe::Principled(_)
             | Lobe::Plastic(_)
+            | Lobe::Burley(_)
             | Lobe::Tinted(_)
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,

@@ -6,6 +6,7 @@ mod albedo;
 mod argument_random;
 mod beckmann;
 mod bsdf;
+mod burley;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -28,6 +29,7 @@ mod thin_dielectric;
 mod tinted;
 
 pub use bsdf::{Bsdf, BsdfSample, BsdfValue, Density, Lobe, LocalSample, LocalValue, SPECULAR_ALPHA, TransportMode};
+pub use burley::Burley;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

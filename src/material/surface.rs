@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe, Measured,
-    MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
+    Body, Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe,
+    Measured, MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
     PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
 };
 use crate::geometry::SurfaceInteraction;
@@ -156,6 +156,7 @@ pub struct PrincipledMaterial {
     pub sheen_tint: FloatTexture,
     pub clearcoat: FloatTexture,
     pub clearcoat_gloss: FloatTexture,
+    pub as_in_mitsuba: bool,
     pub tables: PrincipledTables,
 }
 
@@ -359,6 +360,10 @@ impl Material {
             Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
                 let p = material.at(si, lambda);
+                if material.as_in_mitsuba {
+                    let lobe = Burley::new(p, luminance(p.base, lambda));
+                    return (Lobe::Burley(lobe), p.anisotropic > 0.0);
+                }
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
@@ -403,6 +408,15 @@ impl TintedMaterial {
         let [r, t] = [&self.reflectance, &self.transmittance].map(|tint| tint.reflectance_at(si, lambda));
         (Lobe::Tinted(Tinted::new(lobe, r, t)), is_anisotropic)
     }
+}
+
+/// The luminance of a reflectance; in spectral mode its mean over the wavelengths at hand.
+fn luminance(base: SampledSpectrum, lambda: &Wavelengths) -> f32 {
+    if *lambda != Wavelengths::rgb() {
+        return base.mean();
+    }
+    let [r, g, b, _] = base.0;
+    0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }
 
 fn is_anisotropic(facets: Option<Microfacets>) -> bool {

@@ -259,8 +259,6 @@ impl<'g> Loader<'g> {
 
     fn principled(&mut self, props: &mut Props<'g>) -> (MaterialKind, bool) {
         let span = props.object.span;
-        let message = "`principled` keeps to energy and reciprocity here: its highlights and edges differ somewhat from Mitsuba's";
-        props.warning(span, message);
         let base = props.take("base_color");
         let mut fraction = |name: &'static str, default: f32| {
             let property = props.take(name);
@@ -278,6 +276,7 @@ impl<'g> Loader<'g> {
             sheen_tint: fraction("sheen_tint", 0.0),
             clearcoat: fraction("clearcoat", 0.0),
             clearcoat_gloss: fraction("clearcoat_gloss", 0.0),
+            as_in_mitsuba: true,
         };
         desc.base_color = self.color(base, 0.5, span, Use::Albedo);
         if props.has("specular") && props.has("eta") {
@@ -292,6 +291,9 @@ impl<'g> Loader<'g> {
             "main_specular_sampling_rate",
             "clearcoat_sampling_rate",
         ]);
+        if let Some(flatness) = props.take("flatness").filter(|p| !Self::is_number(p, 0.0)) {
+            props.unsupported(flatness.span, "`flatness` is not supported", "it is 0");
+        }
         let transmits = desc.spec_trans != Textured::Value(0.0);
         (MaterialKind::Principled(desc), !transmits)
     }

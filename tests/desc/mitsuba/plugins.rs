@@ -42,7 +42,7 @@ fn cameras_see_the_left_at_plus_x_and_span_their_width() {
     };
     let fov = |axis: &str| match read(&text(axis), &STRICT).expect("a scene").views[0].camera.kind {
         CameraKind::Perspective { fov, .. } => fov,
-        CameraKind::Orthographic => panic!("not perspective"),
+        _ => panic!("not perspective"),
     };
     // By half the height at distance 1: of the width 1 it is 1/2.
     let of_half_height = |half: f64| (2.0 * half.atan()).to_degrees();

@@ -76,6 +76,7 @@ impl Writer<'_> {
             MaterialKind::Hair(_) => "hair",
             MaterialKind::Interface => "interface",
             MaterialKind::Mix { .. } => "mix",
+            MaterialKind::Principled(desc) if desc.as_in_mitsuba => return Err(unwritable("Mitsuba's `principled`")),
             MaterialKind::Principled(_) => "principled",
             MaterialKind::Measured(_) => "measured",
             MaterialKind::Sided { .. } => return Err(unwritable("a material that is black from one side")),
