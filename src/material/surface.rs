@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe, Measured,
-    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
-    ThinDielectric,
+    Body, Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe,
+    Measured, MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
+    PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -81,8 +81,35 @@ pub enum Material {
     Relief(Arc<Relief>),
     /// By measurements.
     Measured(Arc<MeasuredTables>),
+    /// One material on the side of the shading normal, another on the other; black without one. Neither transmits.
+    Sided(Arc<[Option<Material>; 2]>),
+    /// A specular material of which less light comes.
+    Tinted(Arc<TintedMaterial>),
+    /// A diffuse base under a dielectric boundary, in closed form.
+    Plastic(Arc<PlasticMaterial>),
     /// A fibre.
     Hair(Arc<HairMaterial>),
+}
+
+/// A conductor, dielectric or thin dielectric with factors.
+#[derive(Clone, Debug)]
+pub struct TintedMaterial {
+    /// Which; any other is black.
+    pub material: Material,
+    /// Factor of what is reflected.
+    pub reflectance: SpectrumTexture,
+    /// Factor of what is transmitted.
+    pub transmittance: SpectrumTexture,
+}
+
+/// The textures of [`PlasticParameters`].
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "see there")]
+pub struct PlasticMaterial {
+    pub diffuse: SpectrumTexture,
+    pub specular: SpectrumTexture,
+    pub nonlinear: bool,
+    pub tables: PlasticTables,
 }
 
 /// A dielectric coat and what is under it.
@@ -129,6 +156,7 @@ pub struct PrincipledMaterial {
     pub sheen_tint: FloatTexture,
     pub clearcoat: FloatTexture,
     pub clearcoat_gloss: FloatTexture,
+    pub as_in_mitsuba: bool,
     pub tables: PrincipledTables,
 }
 
@@ -151,7 +179,15 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
         let material = match self {
-            Self::Mix(_) => self.chosen(si),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material,
+                None => {
+                    return Bsdf::new(
+                        Frame::from_normal(si.ns),
+                        Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)),
+                    );
+                }
+            },
             _ => self,
         };
         // The commonest first, and made in its place: a lobe of any kind is some hundred bytes to move.
@@ -186,6 +222,9 @@ impl Material {
             Self::ThinDielectric { .. } => true,
             Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
             Self::Mix(mix) => mix.materials.iter().any(Self::may_have_delta),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::may_have_delta),
+            Self::Tinted(tinted) => tinted.material.may_have_delta(),
+            Self::Plastic(plastic) => plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.may_have_delta(),
         }
     }
@@ -198,6 +237,8 @@ impl Material {
                 !coat.eta.is_constant_over_wavelengths()
             }
             Self::Mix(mix) => mix.materials.iter().any(Self::disperses),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::disperses),
+            Self::Tinted(tinted) => tinted.material.disperses(),
             Self::Relief(relief) => relief.material.disperses(),
             Self::Diffuse { .. }
             | Self::DiffuseTransmission { .. }
@@ -205,6 +246,7 @@ impl Material {
             | Self::ThinDielectric { .. }
             | Self::Hair(_)
             | Self::Interface
+            | Self::Plastic(_)
             | Self::Principled(_)
             | Self::Measured(_) => false,
         }
@@ -215,6 +257,8 @@ impl Material {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Hair(_) => true,
             Self::Mix(mix) => mix.materials.iter().all(Self::is_never_specular),
+            Self::Sided(sides) => sides.iter().flatten().all(Self::is_never_specular),
+            Self::Plastic(plastic) => !plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.is_never_specular(),
             Self::Conductor { .. }
             | Self::Dielectric { .. }
@@ -222,6 +266,7 @@ impl Material {
             | Self::Interface
             | Self::CoatedDiffuse { .. }
             | Self::CoatedConductor { .. }
+            | Self::Tinted(_)
             | Self::Principled(_) => false,
         }
     }
@@ -298,11 +343,27 @@ impl Material {
                 let lobe = Layered::new(boundary, body, coat.interlayer(si, lambda));
                 (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
             }
-            Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material.lobe(si, lambda),
+                None => (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+            },
+            Self::Tinted(tinted) => tinted.lobe(si, lambda),
+            Self::Plastic(plastic) => {
+                let p = PlasticParameters {
+                    diffuse: plastic.diffuse.reflectance_at(si, lambda),
+                    specular: plastic.specular.reflectance_at(si, lambda),
+                    nonlinear: plastic.nonlinear,
+                };
+                (Lobe::Plastic(Plastic::new(p, &plastic.tables)), false)
+            }
             // For those who want no more than the lobe: the normal has been bent before.
             Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
                 let p = material.at(si, lambda);
+                if material.as_in_mitsuba {
+                    let lobe = Burley::new(p, luminance(p.base, lambda));
+                    return (Lobe::Burley(lobe), p.anisotropic > 0.0);
+                }
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
@@ -311,23 +372,51 @@ impl Material {
         }
     }
 
-    /// The material that a mix is at a point, which is no mix.
-    fn chosen(&self, si: &SurfaceInteraction) -> &Self {
+    /// The material that a mix is at a point, or that is on the side that it is seen from: neither of these. `None` is black.
+    fn chosen(&self, si: &SurfaceInteraction) -> Option<&Self> {
         let mut material = self;
         let mut u = unit_f32((hash_u32s(&si.p.to_array().map(f32::to_bits)) >> 32) as u32);
-        while let Self::Mix(mix) = material {
-            let amount = mix.amount.at(si);
-            // What is left of the number is uniform again, for mixes of mixes.
-            if u < amount {
-                material = &mix.materials[1];
-                u /= amount;
-            } else {
-                material = &mix.materials[0];
-                u = (u - amount) / (1.0 - amount);
+        loop {
+            match material {
+                Self::Mix(mix) => {
+                    let amount = mix.amount.at(si);
+                    // What is left of the number is uniform again, for mixes of mixes.
+                    if u < amount {
+                        material = &mix.materials[1];
+                        u /= amount;
+                    } else {
+                        material = &mix.materials[0];
+                        u = (u - amount) / (1.0 - amount);
+                    }
+                }
+                Self::Sided(sides) => material = sides[usize::from(si.wo.dot(si.ns) < 0.0)].as_ref()?,
+                _ => return Some(material),
             }
         }
-        material
     }
+}
+
+impl TintedMaterial {
+    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+        let (lobe, is_anisotropic) = self.material.lobe(si, lambda);
+        let lobe = match lobe {
+            Lobe::Conductor(lobe) => Untinted::Conductor(lobe),
+            Lobe::Dielectric(lobe) => Untinted::Dielectric(lobe),
+            Lobe::ThinDielectric(lobe) => Untinted::ThinDielectric(lobe),
+            _ => return (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+        };
+        let [r, t] = [&self.reflectance, &self.transmittance].map(|tint| tint.reflectance_at(si, lambda));
+        (Lobe::Tinted(Tinted::new(lobe, r, t)), is_anisotropic)
+    }
+}
+
+/// The luminance of a reflectance; in spectral mode its mean over the wavelengths at hand.
+fn luminance(base: SampledSpectrum, lambda: &Wavelengths) -> f32 {
+    if *lambda != Wavelengths::rgb() {
+        return base.mean();
+    }
+    let [r, g, b, _] = base.0;
+    0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }
 
 fn is_anisotropic(facets: Option<Microfacets>) -> bool {

@@ -32,7 +32,10 @@ impl Job<'_> {
     /// anything is rendered.
     pub(super) fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
         let args = self.args;
-        let options = ParseOptions { lenient: args.lenient };
+        let options = ParseOptions {
+            lenient: args.lenient,
+            defines: args.defines.clone(),
+        };
         let desc = self.pool.install(|| match &args.env {
             None => desc::load(path, &options),
             Some(environment) if desc::bare::is_mesh(path) => desc::bare::load(path, Some(environment), &options),

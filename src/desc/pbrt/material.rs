@@ -193,6 +193,7 @@ fn roughness(reader: &mut ParamReader<'_>, [both, u, v]: &RoughnessNames) -> Rou
             "beckmann" => DistributionDesc::Beckmann,
             _ => DistributionDesc::Ggx,
         },
+        separable_masking: false,
     }
 }
 
@@ -298,6 +299,7 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         sheen_tint: textured(&kinds::SHEEN_TINT),
         clearcoat: textured(&kinds::CLEARCOAT),
         clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
+        as_in_mitsuba: false,
         base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
         eta: if given {
             ((1.0 + reflected) / (1.0 - reflected)) as f32
