@@ -77,10 +77,6 @@ fn all(rng: &mut Rng) -> Vec<(&'static str, Arc<World>)> {
             worlds::instanced(vec![worlds::quadrics(rng, 20)], [fixed(rng), fixed(rng), fixed(rng)]),
         ),
         (
-            "instanced patches",
-            worlds::instanced(vec![worlds::patches(rng, 20)], [fixed(rng), fixed(rng), fixed(rng)]),
-        ),
-        (
             "moving triangles",
             worlds::instanced(vec![Shape::Mesh(triangles(rng))], [moving]),
         ),

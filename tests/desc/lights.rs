@@ -152,7 +152,7 @@ fn each_bad_value_has_its_error() {
         ),
         (
             "LightSource \"goniometric\" \"string filename\" @\"scene.pbrt\"",
-            "neither",
+            "not a PNG, EXR",
         ),
         ("LightSource @\"projection\"", "has no `\"string filename\"`"),
         (

@@ -204,3 +204,23 @@ fn no_text_makes_the_obj_reader_panic() {
     }
     assert!((3000..11_500).contains(&refused), "{refused} refused");
 }
+
+#[test]
+fn no_text_makes_the_library_reader_panic() {
+    let file =
+        b"newmtl a b\nKd .5 .5 .5\nKs .1\nNs 10 # shiny\nd .5\nnewmtl c\nillum 7\nNi 1.5\nbump -bm 2 x.png\nKe 1 2 3\n";
+    let parse = |bytes: &[u8]| obj::mtl::parse(bytes, Path::new("colours.mtl"));
+    assert!(parse(file).is_ok());
+    let mut random = Random(4);
+    let mut refused = 0;
+    for _ in 0..6000 {
+        match parse(&mutate(file, 0, &mut random)) {
+            Ok(file) => file.warnings.iter().for_each(|w| drop(w.to_string())),
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    assert!((1000..5900).contains(&refused), "{refused} refused");
+}

@@ -78,7 +78,12 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
     if count == 0 || mesh.indices.is_empty() {
         return Err("there are no vertices or no faces".to_owned());
     }
-    if let Some(bad) = mesh.indices.par_iter().flatten().find_first(|&&i| i as usize >= count) {
+    let is_beyond = |&&i: &&u32| i as usize >= count;
+    let faces = mesh.indices.par_iter().with_min_len(1 << 14);
+    if let Some(bad) = faces
+        .filter_map(|face| face.iter().find(is_beyond))
+        .find_first(|_| true)
+    {
         return Err(format!(
             "a face has the vertex {bad}, but there are {count}, counted from 0"
         ));

@@ -8,6 +8,9 @@ use super::cursor::decode;
 use super::header::{Element, Encoding, Scalar};
 use crate::desc::MeshDesc;
 
+/// Rows that one task decodes, at least.
+const SPAN: usize = 1 << 14;
+
 /// Puts the vertices of `rows` into the mesh, which has none.
 pub(super) fn vertices(
     rows: &[u8],
@@ -29,7 +32,10 @@ pub(super) fn vertices(
     let at = |row: &[u8], i: usize| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32;
     let vectors = |columns: [usize; 3], into: &mut Vec<Vec3>| {
         let vector = |row| Vec3::from_array(columns.map(|i| at(row, i)));
-        rows.par_chunks_exact(row).map(vector).collect_into_vec(into);
+        rows.par_chunks_exact(row)
+            .with_min_len(SPAN)
+            .map(vector)
+            .collect_into_vec(into);
     };
     vectors(columns.position, &mut mesh.positions);
     if let Some(normal) = columns.normal {
@@ -37,7 +43,10 @@ pub(super) fn vertices(
     }
     if let Some(uv) = columns.uv {
         let pair = |row| Vec2::from_array(uv.map(|i| at(row, i)));
-        rows.par_chunks_exact(row).map(pair).collect_into_vec(&mut mesh.uvs);
+        rows.par_chunks_exact(row)
+            .with_min_len(SPAN)
+            .map(pair)
+            .collect_into_vec(&mut mesh.uvs);
     }
 }
 
@@ -56,7 +65,7 @@ pub(super) fn triangle_row(element: &Element) -> Option<usize> {
 
 /// The triangles of `rows`; `None` unless all faces are triangles whose corners are not negative.
 pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<Vec<[u32; 3]>> {
-    if !rows.par_chunks_exact(row).all(|face| face[0] == 3) {
+    if !rows.par_chunks_exact(row).with_min_len(SPAN).all(|face| face[0] == 3) {
         return None;
     }
     let corner = |face: &[u8], i: usize| {
@@ -70,12 +79,13 @@ pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<V
     let triangle = |face: &[u8]| [corner(face, 0), corner(face, 1), corner(face, 2)];
     let mut triangles = Vec::new();
     rows.par_chunks_exact(row)
+        .with_min_len(SPAN)
         .map(triangle)
         .collect_into_vec(&mut triangles);
     // A negative number, or one that is larger than any number of vertices that there can be, is told of elsewhere, with its place.
+    let is_corner = |&i: &u32| i <= i32::MAX as u32;
     triangles
         .par_iter()
-        .flatten()
-        .all(|&i| i <= i32::MAX as u32)
+        .all(|face| face.iter().all(is_corner))
         .then_some(triangles)
 }
