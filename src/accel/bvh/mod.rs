@@ -18,6 +18,7 @@ mod kernel;
 mod lanes;
 mod leaf;
 mod node;
+mod order;
 mod packet;
 mod ploc;
 mod prepare;
