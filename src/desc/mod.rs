@@ -5,7 +5,7 @@
 //! turns a description into things that rays can meet.
 //!
 //! The formats: pbrt-v4 ([`pbrt`]) and Mitsuba 3 ([`mitsuba`]), with meshes in PLY ([`ply`]), OBJ ([`obj`]) and Mitsuba's own
-//! format ([`serialized`]). Lucerna's extensions to pbrt-v4:
+//! format ([`serialized`]); meshes in OBJ or PLY by themselves ([`bare`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -17,6 +17,7 @@
 //! - `"integer blades"` and `"float bladerotation"` of a camera, see [`ApertureDesc`];
 //! - glasses by Sellmeier's equation and more metals among the spectra with names.
 
+pub mod bare;
 mod bytes;
 mod images;
 mod integrator;
@@ -46,8 +47,8 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 pub use crate::sampling::SamplerKind;
 pub use crate::spectrum::ColorSpace;
 pub use integrator::{
-    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc,
-    PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc,
+    PhotonDesc, PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
 };
 pub use kinds::{
     Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS,
@@ -60,7 +61,9 @@ pub use material::{
 };
 pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
-pub use shape::{DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
+pub use shape::{
+    CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,
+};
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
@@ -191,9 +194,10 @@ pub struct ParseOptions {
 }
 
 /// The extensions of the scene files that [`load`] reads.
-const EXTENSIONS: &str = ".pbrt, .pbrt.gz (pbrt-v4) or .xml (Mitsuba 3)";
+const EXTENSIONS: &str = ".pbrt (pbrt-v4), .ply or .obj, or one of these and .gz; .xml (Mitsuba 3)";
 
-/// Reads a scene file; the format goes by the extension (`.pbrt`, `.pbrt.gz`, `.xml`).
+/// Reads a scene file, or a mesh on a neutral stage (see [`bare`]); the format goes by the extension (`.pbrt`, `.ply`, `.obj`; each may
+/// be followed by `.gz`; `.xml`).
 ///
 /// # Errors
 ///
@@ -205,6 +209,8 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
         pbrt::load(path, options)
     } else if name.ends_with(".xml") {
         mitsuba::load(path, options)
+    } else if bare::is_mesh(path) {
+        bare::load(path, None, options)
     } else {
         Err(Error::Usage(format!(
             "{}: not a scene file that Lucerna reads (expected the extension {EXTENSIONS})",

@@ -252,7 +252,7 @@ impl Material {
 
     /// The lobe, and whether it matters which way the tangent points.
     #[inline]
-    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+    pub(super) fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
         match self {
             Self::Diffuse { reflectance, roughness } => {
                 let albedo = reflectance.reflectance_at(si, lambda);

@@ -198,6 +198,9 @@ impl LightBuilder {
         motion: Option<&AnimatedTransform>,
         alpha: &FloatTexture,
     ) -> Result<Vec<Option<LightId>>, String> {
+        if let Shape::Curves(_) = &geometry.shape {
+            return Err("curves cannot be lights, as in pbrt".to_owned());
+        }
         let image = desc
             .image
             .as_deref()
@@ -295,6 +298,7 @@ fn emitter(
             };
             Some((light?, Coordinates::Own))
         }
+        Shape::Curves(_) => None,
     }
 }
 

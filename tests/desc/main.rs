@@ -1,6 +1,7 @@
 //! Scene descriptions: what pbrt and Mitsuba files and meshes become, what is said about bad ones, and that no bytes make a reader panic.
 
 mod bad_input;
+mod bare;
 mod files;
 mod lenses;
 mod lights;

@@ -9,7 +9,7 @@ use super::query::{Asked, Query};
 use super::ray::{LocalRay, direction_scale};
 use super::traverse::{Level, STACK, Walk};
 use super::tree::FixedTree;
-use crate::accel::{HitFilter, RayKind};
+use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, LANES, RayPacket};
 use crate::math::Bounds3;
 
@@ -18,6 +18,15 @@ impl Scene {
     pub fn takes_packets(&self) -> bool {
         self.top.fixed.is_some() && self.top.moving.is_empty()
     }
+}
+
+/// How the rays of a call are put together.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
+    pub as_they_come: bool,
+    /// Nodes of the tree above which sorted rays go through it one by one.
+    pub most_nodes: usize,
 }
 
 /// Classes of rays, by the signs of the direction and the axis of its greatest component.
@@ -250,7 +259,7 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     s: S,
     kernel: K,
     scene: &Scene,
-    kind: RayKind,
+    plan: Plan,
     packets: &[RayPacket],
     hits: &mut [HitPacket],
     filter: Option<&dyn HitFilter>,
@@ -258,7 +267,7 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, filter);
     let mut stack = [0; STACK];
-    if kind == RayKind::Camera {
+    if plan.as_they_come {
         for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
             let (rays, lanes) = neighbours(given);
             let (packet, rest) = call.trace::<false>(rays, lanes, &mut stack);
@@ -289,7 +298,7 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
             };
         }
         let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > scene.limits.bounces {
+        if tree.nodes.len() > plan.most_nodes {
             call.one_by_one::<false>(packets, &places[..count], &mut stack, |place, query| {
                 query.store(&mut hits[place / LANES], place % LANES);
             });
@@ -321,6 +330,7 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
     s: S,
     kernel: K,
     scene: &Scene,
+    plan: Plan,
     packets: &mut [RayPacket],
     filter: Option<&dyn HitFilter>,
 ) {
@@ -330,7 +340,7 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
     let mut places = [0; BATCH];
     for packets in packets.chunks_mut(BATCH / LANES) {
         let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > scene.limits.shadows {
+        if tree.nodes.len() > plan.most_nodes {
             let mut found = [0u8; BATCH / LANES];
             call.one_by_one::<true>(packets, &places[..count], &mut stack, |place, query| {
                 found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);

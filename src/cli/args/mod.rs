@@ -1,5 +1,6 @@
 //! The arguments as typed. Nothing here opens a file or knows a default that a scene could override.
 
+mod bench;
 mod render;
 mod values;
 
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub use bench::BenchArgs;
 pub use render::RenderArgs;
 pub use values::ListKind;
 
@@ -50,6 +52,8 @@ pub enum Command {
     Convert(ConvertArgs),
     /// List what scene files may use, with every parameter: type, range, unit, default
     List(ListArgs),
+    /// Measure intersection backends on the rays of renders
+    Bench(Box<BenchArgs>),
 }
 
 /// Tell what is in a scene.

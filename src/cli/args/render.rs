@@ -26,9 +26,15 @@ Examples:
   lucerna render box.xml -o box.exr -D spp=256 -D max_depth=8
   lucerna render hall.pbrt -o corner.exr --resolution 1920x1080 --crop 0,0,200,100")]
 pub struct RenderArgs {
-    /// Scene files (.pbrt, .pbrt.gz; .xml of Mitsuba)
+    /// Scene files (.pbrt; .xml of Mitsuba), or meshes (.ply, .obj), which are put on a neutral stage; all but .xml may be compressed (.gz)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
+
+    /// With meshes: an image all around that lights them, instead of a lamp over a floor
+    ///
+    /// Equal-area octahedral (square) or equirectangular (twice as wide as high), upright: .exr, .hdr, .pfm, .png and others.
+    #[arg(long, value_name = "IMAGE")]
+    pub env: Option<PathBuf>,
 
     /// The image: .exr (32-bit float, linear) or .png (8-bit sRGB)
     ///
@@ -146,6 +152,13 @@ pub struct RenderArgs {
     /// Write statistics to this file: a JSON object, or an array if there are several renders
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+
+    /// Say where the time went, and how much of it the fastest backend would need for the same rays
+    ///
+    /// By kind of ray, shading, sampling and film; printed, and put into the statistics. Some of the rays are recorded in a short second render
+    /// and traced by every way that each backend has.
+    #[arg(long)]
+    pub profile: bool,
 
     /// Write events to stdout, a JSON object a line
     ///

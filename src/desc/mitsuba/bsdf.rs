@@ -1,14 +1,12 @@
 //! Bsdfs to materials.
 
-use super::graph::{Object, ObjectIndex, Property};
+use super::graph::{Object, ObjectIndex};
 use super::ior::Metal;
 use super::loader::{Loader, constant, grey};
-use super::plugins::Class;
 use super::props::Props;
 use super::spectrum::Use;
-use super::texture;
 use crate::desc::{
-    ConductorDesc, DistributionDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc, ReliefDesc,
+    ConductorDesc, DistributionDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc, PrincipledDesc,
     RoughnessDesc, SpectrumDesc, SpectrumValue, Textured,
 };
 use crate::error::Span;

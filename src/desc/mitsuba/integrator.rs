@@ -4,23 +4,20 @@ use super::graph::Object;
 use super::loader::Loader;
 use super::plugins::Class;
 use super::props::Props;
-use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc};
+use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, PathDesc, PhotonDesc, SppmDesc};
 
-impl Default for IntegratorDesc {
-    /// Paths of any length.
-    fn default() -> Self {
-        Self {
-            max_depth: None,
-            light_sampler: LightSamplerKind::default(),
-            kind: IntegratorKind::Path(PathDesc::default()),
-        }
+/// Paths of any length.
+pub(super) fn default() -> IntegratorDesc {
+    IntegratorDesc {
+        max_depth: None,
+        ..IntegratorDesc::default()
     }
 }
 
 /// Reads an integrator.
 pub(super) fn read<'g>(loader: &mut Loader<'g>, object: &'g Object) -> IntegratorDesc {
     let mut props = Props::new(object);
-    let mut desc = IntegratorDesc::default();
+    let mut desc = default();
     const TECHNICAL: [(&str, &str); 3] = [
         ("rr_depth", "Russian roulette goes by the throughput of a path"),
         ("block_size", "it is a matter of speed"),

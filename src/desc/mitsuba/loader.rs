@@ -154,7 +154,7 @@ impl<'g> Loader<'g> {
         if self.xml.report.has_errors() {
             return Err(Error::Scene(self.xml.report.into_errors()));
         }
-        let integrator = self.integrator.unwrap_or_default();
+        let integrator = self.integrator.unwrap_or_else(super::integrator::default);
         let hash = self.xml.hasher.finalize().to_hex().to_string();
         let (sources, warnings) = self.xml.report.into_sources_and_warnings();
         Ok(SceneDesc {

@@ -17,7 +17,7 @@ use crate::desc::{
     AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
     SpectrumValue, SpotFalloff,
 };
-use crate::image_io::{self, Image};
+use crate::image_io::{self, Encoding, Image};
 use crate::sampling::SphereMap;
 use crate::spectrum::{Outside, Spectrum, cie};
 
@@ -245,7 +245,7 @@ impl ParamReader<'_> {
         let read = std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
         let image = read.and_then(|content| {
             self.context.count(&content);
-            let image = image_io::read(&path).map_err(|error| error.to_string())?;
+            let image = image_io::decode(&content, &path, Encoding::Srgb).map_err(|error| error.to_string())?;
             check_pixels(&image).map(|()| image)
         });
         let refused = image.and_then(|image| match refuse([image.width(), image.height()]) {

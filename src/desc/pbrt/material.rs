@@ -235,6 +235,7 @@ fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind 
 fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
     let names = [
         kinds::SIGMA_A.name,
+        kinds::HAIR_REFLECTANCE.name,
         kinds::HAIR_COLOR.name,
         kinds::EUMELANIN.name,
         kinds::PHEOMELANIN.name,
@@ -250,7 +251,9 @@ fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
         }
     }
     let absorption = reader.absorption_by(&kinds::SIGMA_A);
-    let color = reader.reflectance_by(&kinds::HAIR_COLOR);
+    let colors = [&kinds::HAIR_REFLECTANCE, &kinds::HAIR_COLOR].map(|color| reader.reflectance_by(color));
+    let [reflectance, color] = colors;
+    let color = reflectance.or(color);
     let pigments = [&kinds::EUMELANIN, &kinds::PHEOMELANIN].map(|pigment| reader.pigment_by(pigment));
     HairDesc {
         color: match (absorption, color, pigments) {

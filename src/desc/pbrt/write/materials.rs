@@ -222,7 +222,7 @@ fn put_coat(e: &mut Entity, coat: &CoatDesc, names: &[String]) {
 fn put_hair(e: &mut Entity, hair: &HairDesc, names: &[String]) {
     match &hair.color {
         HairColorDesc::Absorption(sigma) => e.spectrum_textured("sigma_a", sigma, names),
-        HairColorDesc::Reflectance(color) => e.spectrum_textured("color", color, names),
+        HairColorDesc::Reflectance(color) => e.spectrum_textured("reflectance", color, names),
         HairColorDesc::Pigments { eumelanin, pheomelanin } => e
             .float_textured("eumelanin", eumelanin, names)
             .float_textured("pheomelanin", pheomelanin, names),
