@@ -8,9 +8,11 @@ use std::f32::consts::FRAC_1_PI;
 
 use super::conductor::{half_vector, reflection_pdf, sample_reflection};
 use super::{Density, LocalSample, LocalValue, Microfacets, fresnel_dielectric, refract};
+use crate::geometry::SurfaceInteraction;
 use crate::math::{Vec2, Vec3};
 use crate::sampling::{SolidAnglePdf, warp};
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{SampledSpectrum, Wavelengths};
+use crate::texture::SpectrumTexture;
 
 /// The parameters at a point.
 #[derive(Clone, Copy, Debug)]
@@ -208,6 +210,28 @@ impl<'a> Plastic<'a> {
             density: Density::Continuous(SolidAnglePdf(value.pdf)),
             eta: 1.0,
         })
+    }
+}
+
+/// The textures of [`PlasticParameters`].
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "see there")]
+pub struct PlasticMaterial {
+    pub diffuse: SpectrumTexture,
+    pub specular: SpectrumTexture,
+    pub nonlinear: bool,
+    pub tables: PlasticTables,
+}
+
+impl PlasticMaterial {
+    /// The lobe at a point.
+    pub(super) fn at(&self, si: &SurfaceInteraction, lambda: &Wavelengths) -> Plastic<'_> {
+        let p = PlasticParameters {
+            diffuse: self.diffuse.reflectance_at(si, lambda),
+            specular: self.specular.reflectance_at(si, lambda),
+            nonlinear: self.nonlinear,
+        };
+        Plastic::new(p, &self.tables)
     }
 }
 

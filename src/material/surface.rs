@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::{
     Body, Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe,
-    Measured, MeasuredTables, Microfacets, OrenNayar, Plastic, PlasticParameters, PlasticTables, Principled,
-    PrincipledParameters, PrincipledTables, Relief, Roughness, ThinDielectric, Tinted, Untinted,
+    Measured, MeasuredTables, Microfacets, OrenNayar, PlasticMaterial, Principled, PrincipledParameters,
+    PrincipledTables, Relief, Roughness, ThinDielectric, TintedMaterial,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -89,27 +89,6 @@ pub enum Material {
     Plastic(Arc<PlasticMaterial>),
     /// A fibre.
     Hair(Arc<HairMaterial>),
-}
-
-/// A conductor, dielectric or thin dielectric with factors.
-#[derive(Clone, Debug)]
-pub struct TintedMaterial {
-    /// Which; any other is black.
-    pub material: Material,
-    /// Factor of what is reflected.
-    pub reflectance: SpectrumTexture,
-    /// Factor of what is transmitted.
-    pub transmittance: SpectrumTexture,
-}
-
-/// The textures of [`PlasticParameters`].
-#[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "see there")]
-pub struct PlasticMaterial {
-    pub diffuse: SpectrumTexture,
-    pub specular: SpectrumTexture,
-    pub nonlinear: bool,
-    pub tables: PlasticTables,
 }
 
 /// A dielectric coat and what is under it.
@@ -273,7 +252,7 @@ impl Material {
 
     /// The lobe, and whether it matters which way the tangent points.
     #[inline]
-    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+    pub(super) fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
         match self {
             Self::Diffuse { reflectance, roughness } => {
                 let albedo = reflectance.reflectance_at(si, lambda);
@@ -348,14 +327,7 @@ impl Material {
                 None => (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
             },
             Self::Tinted(tinted) => tinted.lobe(si, lambda),
-            Self::Plastic(plastic) => {
-                let p = PlasticParameters {
-                    diffuse: plastic.diffuse.reflectance_at(si, lambda),
-                    specular: plastic.specular.reflectance_at(si, lambda),
-                    nonlinear: plastic.nonlinear,
-                };
-                (Lobe::Plastic(Plastic::new(p, &plastic.tables)), false)
-            }
+            Self::Plastic(plastic) => (Lobe::Plastic(plastic.at(si, lambda)), false),
             // For those who want no more than the lobe: the normal has been bent before.
             Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
@@ -393,20 +365,6 @@ impl Material {
                 _ => return Some(material),
             }
         }
-    }
-}
-
-impl TintedMaterial {
-    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
-        let (lobe, is_anisotropic) = self.material.lobe(si, lambda);
-        let lobe = match lobe {
-            Lobe::Conductor(lobe) => Untinted::Conductor(lobe),
-            Lobe::Dielectric(lobe) => Untinted::Dielectric(lobe),
-            Lobe::ThinDielectric(lobe) => Untinted::ThinDielectric(lobe),
-            _ => return (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
-        };
-        let [r, t] = [&self.reflectance, &self.transmittance].map(|tint| tint.reflectance_at(si, lambda));
-        (Lobe::Tinted(Tinted::new(lobe, r, t)), is_anisotropic)
     }
 }
 

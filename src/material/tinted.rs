@@ -1,8 +1,10 @@
 //! A specular lobe with factors on what it reflects and on what it transmits, as Mitsuba's have them.
 
-use super::{Conductor, Dielectric, LocalSample, LocalValue, ThinDielectric, TransportMode};
+use super::{Conductor, Dielectric, Diffuse, Lobe, LocalSample, LocalValue, Material, ThinDielectric, TransportMode};
+use crate::geometry::SurfaceInteraction;
 use crate::math::{Vec2, Vec3};
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{SampledSpectrum, Wavelengths};
+use crate::texture::SpectrumTexture;
 
 /// A lobe and its factors. Directions are sampled as from the lobe alone.
 #[derive(Clone, Copy, Debug)]
@@ -82,5 +84,30 @@ impl Tinted {
         }?;
         sample.value *= self.factor(wo, sample.wi);
         Some(sample)
+    }
+}
+
+/// A conductor, dielectric or thin dielectric with factors.
+#[derive(Clone, Debug)]
+pub struct TintedMaterial {
+    /// Which; any other is black.
+    pub material: Material,
+    /// Factor of what is reflected.
+    pub reflectance: SpectrumTexture,
+    /// Factor of what is transmitted.
+    pub transmittance: SpectrumTexture,
+}
+
+impl TintedMaterial {
+    pub(super) fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+        let (lobe, is_anisotropic) = self.material.lobe(si, lambda);
+        let lobe = match lobe {
+            Lobe::Conductor(lobe) => Untinted::Conductor(lobe),
+            Lobe::Dielectric(lobe) => Untinted::Dielectric(lobe),
+            Lobe::ThinDielectric(lobe) => Untinted::ThinDielectric(lobe),
+            _ => return (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+        };
+        let [r, t] = [&self.reflectance, &self.transmittance].map(|tint| tint.reflectance_at(si, lambda));
+        (Lobe::Tinted(Tinted::new(lobe, r, t)), is_anisotropic)
     }
 }

@@ -24,6 +24,7 @@ mod ior;
 mod light_image;
 mod loader;
 mod mesh;
+mod nested;
 mod parameters;
 mod plugins;
 mod props;

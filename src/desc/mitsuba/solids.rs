@@ -29,7 +29,7 @@ pub(super) fn cube() -> MeshDesc {
     // The normal of each face, and the directions of its u and v.
     let faces = [
         (Vec3::NEG_Y, Vec3::Z, Vec3::X),
-        (Vec3::Y, Vec3::Z, Vec3::NEG_X),
+        (Vec3::Y, Vec3::NEG_X, Vec3::NEG_Z),
         (Vec3::X, Vec3::Y, Vec3::NEG_Z),
         (Vec3::Z, Vec3::Y, Vec3::X),
         (Vec3::NEG_X, Vec3::Y, Vec3::Z),
@@ -44,7 +44,7 @@ pub(super) fn cube() -> MeshDesc {
             mesh.uvs.push(uv(u, v));
         }
         mesh.indices
-            .extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|v| first + v)));
+            .extend([[0, 2, 1], [0, 3, 2]].map(|triangle| triangle.map(|v| first + v)));
     }
     mesh
 }
