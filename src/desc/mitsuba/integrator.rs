@@ -4,7 +4,7 @@ use super::graph::Object;
 use super::loader::Loader;
 use super::plugins::Class;
 use super::props::Props;
-use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, PathDesc, PhotonDesc, SppmDesc};
+use crate::desc::{Heuristic, IntegratorDesc, IntegratorKind, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc};
 
 /// Paths of any length.
 pub(super) fn default() -> IntegratorDesc {
