@@ -121,11 +121,16 @@ fn a_profile_says_where_the_time_went() {
     let rays: u64 = stages.iter().map(|stage| stage["rays"].as_u64().unwrap()).sum();
     assert_eq!(Some(rays), s["rays"].as_u64());
     let fastest = s["profile"]["fastest"].as_array().unwrap();
-    let kinds: Vec<_> = fastest.iter().map(|fastest| fastest["kind"].as_str().unwrap()).collect();
+    let kinds: Vec<_> = fastest
+        .iter()
+        .map(|fastest| fastest["kind"].as_str().unwrap())
+        .collect();
     assert_eq!(kinds, ["camera", "bounce", "shadow"]);
     assert!(fastest.iter().all(|fastest| fastest["mrays"].as_f64().unwrap() > 0.0));
     // Without it, nothing is said.
-    sandbox.lucerna(&["render", "ball.pbrt", "-o", "c.exr", "--stats", "t.json"]).expect(0);
+    sandbox
+        .lucerna(&["render", "ball.pbrt", "-o", "c.exr", "--stats", "t.json"])
+        .expect(0);
     let t: Value = serde_json::from_slice(&std::fs::read(sandbox.path("t.json")).unwrap()).unwrap();
     assert!(t.get("profile").is_none());
 }
