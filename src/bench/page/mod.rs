@@ -430,7 +430,7 @@ fn method(report: &Report) -> String {
     format!(
         "<h2>How this was measured</h2>\n<p>The rays are those that a render asks about, in the calls in which it asks: recorded from a \
          render of each scene, or from paths through a synthetic world. After a pass over all of them, the contenders take turns of a few \
-         calls each, in an order that changes, so that other work on the machine disturbs all alike. The time of a call is the median of \
+         calls each, traced once before they are timed, in an order that changes, so that other work on the machine disturbs all alike. The time of a call is the median of \
          its turns; whiskers show the quartiles. What it takes to repack rays for a call that wants \
          them otherwise than in packets of eight is counted.</p>\n<p>Answers are compared with those of Lucerna's BVH: a ray differs if it \
          hits where the other does not, or something else at another distance. Of these a judge in double precision looks at some and says \
