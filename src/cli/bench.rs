@@ -170,7 +170,13 @@ fn build_options() -> BuildOptions {
 }
 
 fn scene_case(path: &Path, args: &BenchArgs, saved: Option<&Path>) -> Result<Case> {
-    let desc = desc::load(path, &ParseOptions { lenient: args.lenient })?;
+    let desc = desc::load(
+        path,
+        &ParseOptions {
+            lenient: args.lenient,
+            ..ParseOptions::default()
+        },
+    )?;
     let channel = if args.quiet { Channel::Nobody } else { Channel::Person };
     Reporter {
         channel,

@@ -23,6 +23,7 @@ struct SceneInfo {
     spheres: u64,
     quadrics: u64,
     patches: u64,
+    curve_segments: u64,
     instances: usize,
     instanced_primitives: u64,
     bounds_min: [f32; 3],
@@ -51,7 +52,11 @@ struct Count {
 
 /// Prints what is in a scene.
 pub fn run(args: &InfoArgs) -> Result<()> {
-    let desc = desc::load(&args.scene, &ParseOptions { lenient: args.lenient })?;
+    let options = ParseOptions {
+        lenient: args.lenient,
+        defines: args.defines.clone(),
+    };
+    let desc = desc::load(&args.scene, &options)?;
     let channel = if args.json { Channel::Nobody } else { Channel::Person };
     Reporter {
         channel,
@@ -81,6 +86,7 @@ impl SceneInfo {
     fn new(name: &str, desc: &SceneDesc, scene: &Scene) -> Self {
         let world = scene.world();
         let (mut meshes, mut triangles, mut spheres, mut quadrics, mut patches) = (0, 0, 0, 0, 0);
+        let mut curve_segments = 0;
         for geometry in world.geometries() {
             match &geometry.shape {
                 Shape::Mesh(mesh) => {
@@ -90,6 +96,7 @@ impl SceneInfo {
                 Shape::Spheres(list) => spheres += list.len() as u64,
                 Shape::Quadrics(list) => quadrics += list.len() as u64,
                 Shape::Patches(mesh) => patches += mesh.patch_count() as u64,
+                Shape::Curves(curves) => curve_segments += curves.segments().len() as u64,
             }
         }
         let bounds = scene.bounds();
@@ -107,6 +114,7 @@ impl SceneInfo {
             spheres,
             quadrics,
             patches,
+            curve_segments,
             instances: world.instances().len(),
             instanced_primitives: world.instanced_primitive_count(),
             bounds_min: bounds.min.to_array(),
@@ -147,6 +155,9 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Principled(_) => "principled",
         Material::Relief(relief) => material_kind(&relief.material),
         Material::Measured(_) => "measured",
+        Material::Sided(_) => "sided",
+        Material::Tinted(tinted) => material_kind(&tinted.material),
+        Material::Plastic(_) => "plastic",
         Material::Hair(_) => "hair",
         Material::Interface => "interface",
     }
@@ -186,8 +197,8 @@ impl std::fmt::Display for SceneInfo {
         }
         writeln!(
             f,
-            "  shapes      {} meshes of {} triangles, {} spheres, {} other quadrics, {} patches",
-            self.meshes, self.triangles, self.spheres, self.quadrics, self.patches
+            "  shapes      {} meshes of {} triangles, {} spheres, {} other quadrics, {} patches, {} segments of curves",
+            self.meshes, self.triangles, self.spheres, self.quadrics, self.patches, self.curve_segments
         )?;
         writeln!(
             f,

@@ -62,6 +62,34 @@ pub enum ShapeKind {
         /// How.
         displacement: DisplacementDesc,
     },
+    /// A curve with a width.
+    Curve(Arc<CurveDesc>),
+}
+
+/// How the width of a curve lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKindDesc {
+    /// Facing each ray.
+    Flat,
+    /// Facing each ray, with the normals of a cylinder.
+    Cylinder,
+    /// As its normals say.
+    Ribbon,
+}
+
+/// A curve in object space, whatever basis and degree it had in the file.
+#[derive(Clone, Debug)]
+pub struct CurveDesc {
+    /// How its width lies.
+    pub kind: CurveKindDesc,
+    /// Cubic Bézier segments, one after another; there is at least one.
+    pub segments: Vec<[Vec3; 4]>,
+    /// Width at the start and at the end, and linear between, each segment taking an equal share; not negative, not both zero.
+    pub widths: [f64; 2],
+    /// Of a ribbon: at both ends of each segment, one more than there are segments; not zero, not normalised. Of other kinds none.
+    pub normals: Vec<Vec3>,
+    /// Each segment is divided 2 to this times in advance, for tighter boxes; at most 10.
+    pub split_depth: u32,
 }
 
 /// Surfaces of revolution around the z axis, object space.

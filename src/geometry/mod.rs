@@ -1,6 +1,7 @@
 //! Shapes, the world they make up, packets of rays, and what a hit says about the surface.
 
 mod cone;
+mod curve;
 mod mesh;
 mod packet;
 mod patch;
@@ -14,6 +15,7 @@ mod triangle;
 mod world;
 
 pub use cone::RayCone;
+pub use curve::{CurveKind, CurveSegment, CurveSet};
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket, RayQueue};
 pub use patch::{Patch, PatchHit};

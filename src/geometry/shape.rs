@@ -1,6 +1,6 @@
 //! What a geometry is made of, and what all kinds of shapes can say about their primitives.
 
-use super::{PatchMesh, Quadric, Sphere, TriangleMesh};
+use super::{CurveSet, PatchMesh, Quadric, Sphere, TriangleMesh};
 use crate::math::{Bounds3, DVec3};
 
 /// What a geometry is made of.
@@ -14,9 +14,12 @@ pub enum Shape {
     Quadrics(Vec<Quadric>),
     /// Bilinear patches; primitive ids are their indices.
     Patches(PatchMesh),
+    /// Curves; primitive ids are those of parts of their segments.
+    Curves(CurveSet),
 }
 
-/// Where the line of a ray meets a primitive, in units of the ray's direction: at most two places, the nearer first.
+/// Where the line of a ray meets a primitive, in units of the ray's direction: at most two places, the nearer first. Of a curve only
+/// what is in front of the ray's origin counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineHits {
     /// NaN for none.
@@ -58,6 +61,7 @@ impl Shape {
             Self::Spheres(spheres) => spheres.len(),
             Self::Quadrics(quadrics) => quadrics.len(),
             Self::Patches(mesh) => mesh.patch_count(),
+            Self::Curves(curves) => curves.primitive_count(),
         }
     }
 
@@ -81,6 +85,7 @@ impl Shape {
             Self::Spheres(spheres) => spheres[primitive].bounds(),
             Self::Quadrics(quadrics) => quadrics[primitive].bounds(),
             Self::Patches(mesh) => mesh.patch(primitive).bounds(),
+            Self::Curves(curves) => curves.primitive_bounds(primitive),
         }
     }
 
@@ -107,7 +112,10 @@ impl Shape {
                 let [a, b] = mesh.patch(primitive).intersect(origin, direction);
                 LineHits::new(a.map(|hit| hit.t), b.map(|hit| hit.t))
             }
-            Self::Patches(_) => LineHits::NONE,
+            Self::Curves(curves) if primitive < curves.primitive_count() => {
+                curves.intersect(primitive, origin, direction)
+            }
+            Self::Patches(_) | Self::Curves(_) => LineHits::NONE,
         }
     }
 
@@ -118,6 +126,7 @@ impl Shape {
             Self::Spheres(spheres) => size_of_val(spheres.as_slice()),
             Self::Quadrics(quadrics) => size_of_val(quadrics.as_slice()),
             Self::Patches(mesh) => mesh.memory(),
+            Self::Curves(curves) => curves.memory(),
         }
     }
 }

@@ -138,6 +138,7 @@ fn local_surface(shape: &Shape, origin: DVec3, direction: DVec3, ray: &Ray, hit:
         Shape::Mesh(mesh) => triangle_surface(mesh, primitive, origin, direction, ray.time),
         Shape::Spheres(spheres) => sphere_surface(&spheres[primitive], origin, direction, tnear),
         Shape::Quadrics(quadrics) => quadrics[primitive].surface(origin, direction, tnear),
+        Shape::Curves(curves) => curves.surface(primitive, origin, direction, tnear),
         Shape::Patches(mesh) => mesh.surface(primitive).at(origin, direction, tnear),
     }
 }

@@ -2,8 +2,10 @@
 
 use super::tessellate::{displaced, subdivided};
 use super::textures::TextureCompiler;
-use crate::desc::{MeshDesc, MotionDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
-use crate::geometry::{Geometry, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh};
+use crate::desc::{CurveDesc, CurveKindDesc, MeshDesc, MotionDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
+use crate::geometry::{
+    CurveKind, CurveSegment, CurveSet, Geometry, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh,
+};
 use crate::math::{AnimatedTransform, DAffine3, DVec3, Vec2, Vec3, transform_point};
 
 /// A shape as a geometry, and how the geometry then moves.
@@ -38,6 +40,10 @@ fn geometry(shape: &ShapeDesc, transform: &DAffine3, textures: &mut TextureCompi
             let world_from_object = &shape.world_from_object.start;
             in_space(&displaced(mesh, &texture, displacement.edge_length, world_from_object)?)
         }
+        ShapeKind::Curve(curve) => {
+            let curves = curve_in_space(curve, transform).ok_or("the curve is too large")?;
+            Ok(Shape::Curves(curves.with_flipped_normal(reverse)))
+        }
         ShapeKind::BilinearMesh(mesh) => patches_in_space(mesh, transform, reverse),
         ShapeKind::Sphere { radius } => {
             let sphere = Sphere::new(*radius, *transform).ok_or("the sphere has no extent")?;
@@ -49,6 +55,23 @@ fn geometry(shape: &ShapeDesc, transform: &DAffine3, textures: &mut TextureCompi
             Ok(Shape::Quadrics(vec![quadric.with_flipped_normal(reverse)]))
         }
     }
+}
+
+fn curve_in_space(curve: &CurveDesc, transform: &DAffine3) -> Option<CurveSet> {
+    let kind = match curve.kind {
+        CurveKindDesc::Flat => CurveKind::Flat,
+        CurveKindDesc::Cylinder => CurveKind::Cylinder,
+        CurveKindDesc::Ribbon => CurveKind::Ribbon,
+    };
+    let [start, end] = curve.widths;
+    let width = |i: usize| (start + (end - start) * i as f64 / curve.segments.len() as f64) as f32;
+    let normal = |i: usize| curve.normals.get(i).map_or(Vec3::Z, |n| n.normalize_or_zero());
+    let segments = curve.segments.iter().enumerate().map(|(i, points)| CurveSegment {
+        points: *points,
+        widths: [width(i), width(i + 1)],
+        normals: [normal(i), normal(i + 1)],
+    });
+    CurveSet::new(segments.collect(), kind, curve.split_depth, *transform)
 }
 
 fn kind_of(surface: &QuadricDesc) -> QuadricKind {

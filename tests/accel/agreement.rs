@@ -7,7 +7,7 @@ use lucerna::accel::brute::Brute;
 use lucerna::accel::bvh::Bvh;
 use lucerna::accel::judge::Judge;
 use lucerna::accel::{Accel, BuildOptions, FilterHit, HitFilter};
-use lucerna::geometry::{Geometry, GeometryId, Hit, Opacity, PrimitiveId, Ray, Shape, World, WorldBuilder};
+use lucerna::geometry::{CurveKind, Geometry, GeometryId, Hit, Opacity, PrimitiveId, Ray, Shape, World, WorldBuilder};
 use rayon::prelude::*;
 
 use crate::rays::RayMaker;
@@ -232,6 +232,10 @@ fn a_filter_is_asked_about_filtered_geometry_only() {
         filtered(vec![worlds::spheres(rng, 50), worlds::spheres(rng, 10)]),
         filtered(vec![worlds::quadrics(rng, 60), worlds::patches(rng, 20)]),
         filtered(vec![worlds::patches(rng, 60), worlds::quadrics(rng, 10)]),
+        filtered(vec![
+            worlds::curves(rng, 300, CurveKind::Flat),
+            worlds::quadrics(rng, 10),
+        ]),
     ];
     for (seed, world) in worlds.iter().enumerate() {
         let opaque = |hit: GeometryId| world.geometry(hit).opacity == Opacity::Opaque;

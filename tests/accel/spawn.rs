@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lucerna::geometry::{Ray, Shape, Sphere, TriangleMesh, World};
+use lucerna::geometry::{CurveKind, Ray, Shape, Sphere, TriangleMesh, World};
 use lucerna::math::{AnimatedTransform, DVec3, Vec2, Vec3};
 
 use crate::rng::Rng;
@@ -65,12 +65,16 @@ fn all(rng: &mut Rng) -> Vec<(&'static str, Arc<World>)> {
         ("quadrics", worlds::of_shapes(vec![worlds::quadrics(rng, 300)])),
         ("patches", worlds::of_shapes(vec![worlds::patches(rng, 300)])),
         (
-            "instanced quadrics",
-            worlds::instanced(vec![worlds::quadrics(rng, 20)], [fixed(rng), fixed(rng), fixed(rng)]),
+            "curves",
+            worlds::of_shapes(vec![worlds::curves(rng, 100, CurveKind::Flat)]),
         ),
         (
-            "instanced patches",
-            worlds::instanced(vec![worlds::patches(rng, 20)], [fixed(rng), fixed(rng), fixed(rng)]),
+            "round curves",
+            worlds::of_shapes(vec![worlds::curves(rng, 100, CurveKind::Cylinder)]),
+        ),
+        (
+            "instanced quadrics",
+            worlds::instanced(vec![worlds::quadrics(rng, 20)], [fixed(rng), fixed(rng), fixed(rng)]),
         ),
         (
             "moving triangles",
@@ -102,6 +106,11 @@ fn towards(world: &World, rng: &mut Rng) -> Ray {
             let quadric = &quadrics[rng.below(quadrics.len())];
             let u = Vec2::new(rng.unit(), rng.unit());
             (quadric.sample(u).p, f64::from(quadric.bounds().extent().length()))
+        }
+        Shape::Curves(curves) => {
+            let [a, b, c, d] = curves.segments()[rng.below(curves.segments().len())].points;
+            let on = (a + 3.0 * b + 3.0 * c + d) * 0.125 + 0.01 * rng.cube();
+            (on.as_dvec3(), 0.1)
         }
         Shape::Patches(mesh) => {
             let patch = mesh.patch(rng.below(mesh.patch_count()));
@@ -153,9 +162,13 @@ fn a_ray_does_not_meet_the_primitive_that_it_leaves() {
             let again = intersect(&*accel, &spawned, None);
             let mut met = 0;
             for ((answer, (hit, error, cos)), ray) in again.iter().zip(&left).zip(&spawned) {
-                // A twisted patch may be met again, but farther away than its error explains, except by a ray that grazes it.
-                let is_patch = matches!(world.geometry(hit.geometry).shape, Shape::Patches(_));
-                let is_false = |t: f32| !is_patch || (*cos > 0.05 && t * cos < *error);
+                // A twisted patch may be met again, but farther away than its error explains, except by a ray that grazes it;
+                // so may a bent curve, but not within its width, by which a ray leaves it.
+                let is_false = |t: f32| match world.geometry(hit.geometry).shape {
+                    Shape::Patches(_) => *cos > 0.05 && t * cos < *error,
+                    Shape::Curves(_) => t < 0.25 * error,
+                    _ => true,
+                };
                 if let Some((other, t)) = answer
                     && other == hit
                     && is_false(*t)

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use lucerna::geometry::{
-    Geometry, Group, Instance, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh, World, WorldBuilder,
+    CurveKind, CurveSegment, CurveSet, Geometry, Group, Instance, PatchMesh, Quadric, QuadricKind, Shape, Sphere,
+    TriangleMesh, World, WorldBuilder,
 };
 use lucerna::math::{AnimatedTransform, DAffine3, DQuat, DVec3, Vec3};
 
@@ -232,6 +233,25 @@ pub fn patches(rng: &mut Rng, count: usize) -> Shape {
     Shape::Patches(PatchMesh::new(positions, indices).unwrap())
 }
 
+/// Bent curves of all kinds and widths in a cube.
+pub fn curves(rng: &mut Rng, count: usize, kind: CurveKind) -> Shape {
+    let segment = |_| {
+        let mut at = rng.cube();
+        let along = 0.15 * rng.direction();
+        let points = std::array::from_fn(|_| {
+            at += along + 0.05 * rng.cube();
+            at
+        });
+        CurveSegment {
+            points,
+            widths: [rng.range(0.0, 0.1), rng.range(0.01, 0.1)],
+            normals: [rng.direction(), rng.direction()],
+        }
+    };
+    let segments = (0..count).map(segment).collect();
+    Shape::Curves(CurveSet::new(segments, kind, 2, DAffine3::IDENTITY).unwrap())
+}
+
 /// Many of the same triangle, triangles without area, and triangles that share planes and edges.
 fn degenerate(rng: &mut Rng) -> TriangleMesh {
     let mut positions: Vec<Vec3> = (0..60).map(|_| rng.cube()).collect();
@@ -294,6 +314,28 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
         ),
         ("quadrics", of_shapes(vec![quadrics(rng, 60)])),
         ("patches", of_shapes(vec![patches(rng, 80)])),
+        (
+            "curves",
+            of_shapes(vec![
+                curves(rng, 30, CurveKind::Flat),
+                curves(rng, 30, CurveKind::Cylinder),
+                curves(rng, 30, CurveKind::Ribbon),
+            ]),
+        ),
+        (
+            "instances of curves",
+            instanced(
+                vec![curves(rng, 8, CurveKind::Flat), curves(rng, 8, CurveKind::Ribbon)],
+                (0..6).map(|_| fixed(place(rng, 0.5, 1.0))).collect::<Vec<_>>(),
+            ),
+        ),
+        (
+            "moving instances of curves",
+            instanced(
+                vec![curves(rng, 8, CurveKind::Cylinder)],
+                (0..6).map(|_| motion(rng)).collect::<Vec<_>>(),
+            ),
+        ),
         (
             "instances of quadrics and patches",
             instanced(

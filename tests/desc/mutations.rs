@@ -5,7 +5,7 @@ use std::path::Path;
 use lucerna::desc::{ParseOptions, obj, pbrt, ply};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
+pub(super) struct Random(pub u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -15,7 +15,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize
     }
 }
@@ -49,7 +49,7 @@ const PIECES: [&[u8]; 24] = [
 ];
 
 /// One to four changes from byte `start` on: bytes changed, removed, doubled, pieces put in, the end cut off.
-fn mutate(original: &[u8], start: usize, random: &mut Random) -> Vec<u8> {
+pub(super) fn mutate(original: &[u8], start: usize, random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..1 + random.below(4) {
         let at = (start + random.below(bytes.len().saturating_sub(start))).min(bytes.len().saturating_sub(1));
@@ -114,6 +114,7 @@ fn no_text_makes_the_reader_panic() {
         let text = mutate(SCENES[round % SCENES.len()].as_bytes(), 0, &mut random);
         let options = ParseOptions {
             lenient: round % 2 == 0,
+            ..ParseOptions::default()
         };
         // What is reported must be fit to be shown, too.
         match pbrt::parse_str(&text, Path::new("no/such/directory/scene.pbrt"), &options) {
@@ -202,4 +203,24 @@ fn no_text_makes_the_obj_reader_panic() {
         }
     }
     assert!((3000..11_500).contains(&refused), "{refused} refused");
+}
+
+#[test]
+fn no_text_makes_the_library_reader_panic() {
+    let file =
+        b"newmtl a b\nKd .5 .5 .5\nKs .1\nNs 10 # shiny\nd .5\nnewmtl c\nillum 7\nNi 1.5\nbump -bm 2 x.png\nKe 1 2 3\n";
+    let parse = |bytes: &[u8]| obj::mtl::parse(bytes, Path::new("colours.mtl"));
+    assert!(parse(file).is_ok());
+    let mut random = Random(4);
+    let mut refused = 0;
+    for _ in 0..6000 {
+        match parse(&mutate(file, 0, &mut random)) {
+            Ok(file) => file.warnings.iter().for_each(|w| drop(w.to_string())),
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    assert!((1000..5900).contains(&refused), "{refused} refused");
 }

@@ -1,9 +1,9 @@
 //! Shapes with the parameters of pbrt, and its defaults.
 
 use glam::{Vec2, Vec3};
-use lucerna::desc::{QuadricDesc, ShapeKind, Textured};
+use lucerna::desc::{CurveKindDesc, QuadricDesc, ShapeKind, Textured};
 
-use super::world;
+use super::{errors, world};
 
 fn kinds(text: &str) -> Vec<ShapeKind> {
     world(text).shapes.into_iter().map(|shape| shape.kind).collect()
@@ -116,4 +116,65 @@ fn cages_and_displacements_arrive_with_their_defaults() {
         })
         .collect();
     assert_eq!(lengths, [1.0, 0.25, 0.5]);
+}
+
+#[test]
+fn curves_of_every_basis_are_cubic_segments() {
+    let points = "\"point3 P\" [0 0 0  3 0 0  3 3 0  0 3 3]";
+    let kinds = kinds(&format!(
+        "Shape \"curve\" {points}\nShape \"curve\" {points} \"string basis\" \"bspline\" \"string type\" \"cylinder\" \"float width0\" .5
+         Shape \"curve\" \"point3 P\" [0 0 0  3 0 0  3 3 0] \"integer degree\" 2 \"float width\" .25 \"integer splitdepth\" 0
+         Shape \"curve\" {points} \"integer degree\" 2 \"string basis\" \"bspline\" \"string type\" \"ribbon\" \"normal N\" [0 0 1 0 1 0 1 0 0]"
+    ));
+    let curve = |i: usize| match &kinds[i] {
+        ShapeKind::Curve(curve) => curve,
+        other => panic!("{other:?}"),
+    };
+    let v = Vec3::new;
+    assert_eq!(
+        curve(0).segments,
+        [[v(0.0, 0.0, 0.0), v(3.0, 0.0, 0.0), v(3.0, 3.0, 0.0), v(0.0, 3.0, 3.0)]]
+    );
+    assert_eq!(
+        (curve(0).widths, curve(0).kind, curve(0).split_depth),
+        ([1.0, 1.0], CurveKindDesc::Flat, 3)
+    );
+    assert_eq!(
+        curve(1).segments,
+        [[v(2.5, 0.5, 0.0), v(3.0, 1.0, 0.0), v(3.0, 2.0, 0.0), v(2.5, 2.5, 0.5)]]
+    );
+    assert_eq!((curve(1).widths, curve(1).kind), ([0.5, 1.0], CurveKindDesc::Cylinder));
+    assert_eq!(
+        curve(2).segments,
+        [[v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(3.0, 1.0, 0.0), v(3.0, 3.0, 0.0)]]
+    );
+    assert_eq!((curve(2).widths, curve(2).split_depth), ([0.25, 0.25], 0));
+    assert_eq!(curve(3).segments.len(), 2);
+    assert_eq!(
+        curve(3).segments[0],
+        [v(1.5, 0.0, 0.0), v(2.5, 0.0, 0.0), v(3.0, 0.5, 0.0), v(3.0, 1.5, 0.0)]
+    );
+    assert_eq!(curve(3).normals, [Vec3::Z, Vec3::Y, Vec3::X]);
+}
+
+#[test]
+fn bad_displacements_are_refused() {
+    for (parameter, message) in [
+        (
+            "\"texture displacement\" \"no such\"",
+            "there is no float texture `no such`",
+        ),
+        ("\"float displacement.edgelength\" 0", "it must be positive"),
+        ("\"float edgelength\" -1", "it must be positive"),
+    ] {
+        // The file is missing too.
+        let found = errors(&format!(
+            "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" {parameter}"
+        ));
+        assert_eq!(found.len(), 2);
+        assert!(
+            found.iter().any(|e| e.message.contains(message)),
+            "{parameter}: {found:?}"
+        );
+    }
 }

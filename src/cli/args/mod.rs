@@ -13,7 +13,7 @@ pub use render::RenderArgs;
 pub use values::ListKind;
 
 use crate::accel::Backend;
-use values::parse_backend;
+use values::{parse_backend, parse_define};
 
 /// What `--version` says: the program, and the Embree that it was built with.
 const VERSION: &str = concat!(
@@ -23,7 +23,7 @@ const VERSION: &str = concat!(
     ")"
 );
 
-/// A physically based renderer: pbrt-v4 scenes in, EXR or PNG pictures out.
+/// A physically based renderer: pbrt-v4 and Mitsuba 3 scenes in, EXR or PNG pictures out.
 ///
 /// Rays are traced in packets through Embree, or through Lucerna's own BVH. A picture depends on the scene, the options and the
 /// seed, and not on the number of threads: the same command gives the same bits.
@@ -67,6 +67,10 @@ pub struct InfoArgs {
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
 
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
+
     /// Take unknown and unsupported parameters as warnings where something can stand in for them
     #[arg(long)]
     pub lenient: bool,
@@ -92,6 +96,10 @@ pub struct ConvertArgs {
     /// The file to write
     #[arg(value_name = "OUT.pbrt")]
     pub output: PathBuf,
+
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
 
     /// Take unknown and unsupported parameters as warnings where something can stand in for them
     #[arg(long)]

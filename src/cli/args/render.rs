@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::values::{
     ColorArg, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop,
-    parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
+    parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
 };
 use crate::accel::Backend;
 use crate::film::PixelRect;
@@ -23,11 +23,18 @@ Examples:
   lucerna render cornell-box.pbrt -o cornell-box.png --spp 256
   lucerna render frame-*.pbrt -o 'out/{scene}.exr' --quiet
   lucerna render hall.pbrt -o 'hall-{camera}.exr' --json --stats hall.json
+  lucerna render box.xml -o box.exr -D spp=256 -D max_depth=8
   lucerna render hall.pbrt -o corner.exr --resolution 1920x1080 --crop 0,0,200,100")]
 pub struct RenderArgs {
-    /// Scene files (.pbrt, .pbrt.gz)
+    /// Scene files (.pbrt; .xml of Mitsuba), or meshes (.ply, .obj), which are put on a neutral stage; each may be compressed (.gz)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
+
+    /// With meshes: an image all around that lights them, instead of a lamp over a floor
+    ///
+    /// Equal-area octahedral (square) or equirectangular (twice as wide as high), upright: .exr, .hdr, .pfm, .png and others.
+    #[arg(long, value_name = "IMAGE")]
+    pub env: Option<PathBuf>,
 
     /// The image: .exr (32-bit float, linear) or .png (8-bit sRGB)
     ///
@@ -133,6 +140,10 @@ pub struct RenderArgs {
     /// Let Embree use its fast triangle test, which is not watertight
     #[arg(long)]
     pub not_robust: bool,
+
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
 
     /// Take unknown and unsupported parameters of a scene as warnings where something can stand in for them
     #[arg(long)]

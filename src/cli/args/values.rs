@@ -189,6 +189,14 @@ pub(super) fn parse_threads(text: &str) -> Result<Threads, String> {
     }
 }
 
+/// `NAME=VALUE`.
+pub(super) fn parse_define(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}
+
 pub(super) fn parse_backend(text: &str) -> Result<Backend, String> {
     text.parse().map_err(|error: crate::Error| error.to_string())
 }

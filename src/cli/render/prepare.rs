@@ -32,9 +32,18 @@ impl Job<'_> {
     /// anything is rendered.
     pub(super) fn prepare(&mut self, path: &Path, start: Instant) -> Result<(Prepared, Vec<Picture>)> {
         let args = self.args;
-        let desc = self
-            .pool
-            .install(|| desc::load(path, &ParseOptions { lenient: args.lenient }))?;
+        let options = ParseOptions {
+            lenient: args.lenient,
+            defines: args.defines.clone(),
+        };
+        let desc = self.pool.install(|| match &args.env {
+            None => desc::load(path, &options),
+            Some(environment) if desc::bare::is_mesh(path) => desc::bare::load(path, Some(environment), &options),
+            Some(_) => Err(Error::Usage(format!(
+                "{}: --env lights bare meshes (.ply, .obj); a scene has lights of its own",
+                path.display()
+            ))),
+        })?;
         let reporter = Reporter {
             channel: self.channel,
             scene: path,
@@ -87,7 +96,7 @@ impl Job<'_> {
         if let Some(missed) = integrator.blind_spot(&scene) {
             reporter.say(&format!("warning: {missed}"));
         }
-        if scene.lights().is_empty() {
+        if scene.lights().is_empty() && integrator.needs_lights() {
             reporter.say(&format!(
                 "warning: {} has no lights: its picture is black",
                 path.display()
@@ -106,7 +115,7 @@ impl Job<'_> {
     /// Refuses a camera or a film that does not go with the integrator or the colour mode.
     fn check_film(&self, desc: &SceneDesc, view: &View) -> Result<()> {
         let integrator = self.integrator(desc)?;
-        if integrator.film(view).takes_splats() && !view.camera.takes_light_paths() {
+        if integrator.splats() && !view.camera.takes_light_paths() {
             return Err(Error::Usage(format!(
                 "`{}` connects light paths to the camera `{}`, which looks through lenses: `path`, `photon` and `sppm` do not",
                 integrator.name(),
@@ -118,7 +127,7 @@ impl Job<'_> {
         }
         let problem = if ColorMode::from(self.args.color) == ColorMode::Rgb {
             "light has no wavelengths with --color rgb".to_owned()
-        } else if integrator.film(view).takes_splats() {
+        } else if integrator.splats() {
             format!("`{}` brings light to the film by its colors only", integrator.name())
         } else {
             return Ok(());
@@ -132,7 +141,10 @@ impl Job<'_> {
     /// The file for a view: distinct from that of every other picture of this job.
     fn output_path(&mut self, scene: &Path, view: &View, views: usize) -> Result<PathBuf> {
         let file_name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let stem = file_name.trim_end_matches(".gz").trim_end_matches(".pbrt");
+        let stem = file_name.trim_end_matches(".gz");
+        let stem = [".pbrt", ".ply", ".obj"]
+            .iter()
+            .fold(stem, |stem, end| stem.trim_end_matches(end));
         let several = if views > 1 {
             "{scene}-{camera}.exr"
         } else {

@@ -7,6 +7,7 @@
 //! Groups, objects, smoothing groups, lines, points and colours of vertices are passed over; free-form curves and surfaces are
 //! errors. Texture coordinates are as pbrt's, (0, 0) being the lower left corner of an image.
 
+pub mod mtl;
 mod reader;
 mod words;
 

@@ -15,9 +15,9 @@ use crate::desc::kinds::lights::{
 };
 use crate::desc::{
     AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
-    SpectrumValue,
+    SpectrumValue, SpotFalloff,
 };
-use crate::image_io::{self, Image};
+use crate::image_io::{self, Encoding, Image};
 use crate::sampling::SphereMap;
 use crate::spectrum::{Outside, Spectrum, cie};
 
@@ -136,7 +136,13 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
         let range = format!("no more than `{}`, {angle}", CONE_ANGLE.name);
         reader.out_of_range(CONE_DELTA.name, &delta.to_string(), &range);
     }
-    LightKind::Spot { from, to, angle, delta }
+    LightKind::Spot {
+        from,
+        to,
+        angle,
+        delta,
+        falloff: SpotFalloff::Smooth,
+    }
 }
 
 fn infinite(reader: &mut ParamReader<'_>) -> (LightKind, Option<SpectrumDesc>) {
@@ -239,7 +245,7 @@ impl ParamReader<'_> {
         let read = std::fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()));
         let image = read.and_then(|content| {
             self.context.count(&content);
-            let image = image_io::read(&path).map_err(|error| error.to_string())?;
+            let image = image_io::decode(&content, &path, Encoding::Srgb).map_err(|error| error.to_string())?;
             check_pixels(&image).map(|()| image)
         });
         let refused = image.and_then(|image| match refuse([image.width(), image.height()]) {

@@ -49,6 +49,11 @@ impl<'a> Cursor<'a> {
         Ok(bytes)
     }
 
+    /// The next so many bytes of a binary file, if there are so many, which are read again.
+    pub fn peek(&self, count: usize) -> Option<&'a [u8]> {
+        self.text.get(self.position..self.position.checked_add(count)?)
+    }
+
     /// The next number.
     pub fn number(&mut self, kind: Scalar) -> Result<f64, String> {
         match self.encoding {

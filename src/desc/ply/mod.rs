@@ -8,13 +8,15 @@
 
 mod cursor;
 mod header;
+mod rows;
 
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::{MeshDesc, bytes};
-use cursor::{Cursor, decode};
+use cursor::Cursor;
 use header::{Element, Encoding, Scalar};
 
 /// A mesh file.
@@ -60,7 +62,9 @@ pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
         }
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => read_vertices(&mut cursor, element, header.encoding, &mut mesh)?,
-            "face" if mesh.indices.is_empty() => mesh.indices = read_faces(&mut cursor, element)?,
+            "face" if mesh.indices.is_empty() => {
+                mesh.indices = read_faces(&mut cursor, element, header.encoding)?;
+            }
             _ => skip(&mut cursor, element, header.encoding)?,
         }
     }
@@ -74,7 +78,12 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
     if count == 0 || mesh.indices.is_empty() {
         return Err("there are no vertices or no faces".to_owned());
     }
-    if let Some(bad) = mesh.indices.iter().flatten().find(|&&i| i as usize >= count) {
+    let is_beyond = |&&i: &&u32| i as usize >= count;
+    let faces = mesh.indices.par_iter().with_min_len(1 << 14);
+    if let Some(bad) = faces
+        .filter_map(|face| face.iter().find(is_beyond))
+        .find_first(|_| true)
+    {
         return Err(format!(
             "a face has the vertex {bad}, but there are {count}, counted from 0"
         ));
@@ -134,28 +143,13 @@ fn read_vertices(
         return Err("there are more vertices than 32 bits can count".to_owned());
     }
     let count = element.count as usize;
-    mesh.positions.reserve_exact(count);
-    mesh.normals
-        .reserve_exact(if columns.normal.is_some() { count } else { 0 });
-    mesh.uvs.reserve_exact(if columns.uv.is_some() { count } else { 0 });
     match element.fixed_row().filter(|_| encoding != Encoding::Ascii) {
         Some(row) => {
-            let offsets: Vec<usize> = element
-                .properties
-                .iter()
-                .scan(0, |end, p| {
-                    let start = *end;
-                    *end += p.value.bytes();
-                    Some(start)
-                })
-                .collect();
-            let rows = cursor.bytes(count.saturating_mul(row))?;
-            for row in rows.chunks_exact(row) {
-                let at = |i: usize| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32;
-                push_vertex(mesh, &columns, at);
-            }
+            let content = cursor.bytes(count.saturating_mul(row))?;
+            rows::vertices(content, row, element, &columns, encoding, mesh);
         }
         None => {
+            mesh.positions.reserve_exact(count);
             let mut row = vec![0.0; element.properties.len()];
             for _ in 0..count {
                 for (property, value) in element.properties.iter().zip(&mut row) {
@@ -183,12 +177,19 @@ fn push_vertex(mesh: &mut MeshDesc, columns: &Columns, at: impl Fn(usize) -> f32
 }
 
 /// The faces as triangles. Those with fewer than three vertices are left out, as pbrt leaves them.
-fn read_faces(cursor: &mut Cursor, element: &Element) -> Result<Vec<[u32; 3]>, String> {
+fn read_faces(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Result<Vec<[u32; 3]>, String> {
     let is_corners = |name: &str| name == "vertex_indices" || name == "vertex_index";
     let mut properties = element.properties.iter();
     let corners = properties
         .position(|p| is_corners(&p.name) && p.length.is_some() && p.value.is_integer())
         .ok_or("the faces have no list of integers `vertex_indices`")?;
+    if let Some(row) = rows::triangle_row(element).filter(|_| encoding != Encoding::Ascii)
+        && let Some(content) = cursor.peek((element.count as usize).saturating_mul(row))
+        && let Some(triangles) = rows::triangles(content, row, encoding)
+    {
+        cursor.bytes(content.len())?;
+        return Ok(triangles);
+    }
     let mut triangles = Vec::with_capacity(element.count as usize);
     for _ in 0..element.count {
         for (i, property) in element.properties.iter().enumerate() {

@@ -44,7 +44,7 @@ fn lenient_reading_turns_the_unknown_into_warnings() {
         Material "diffuse" "texture reflectance" "b"
         Material "subsurface" "float thickness" 3
         Shape "sphere" "float what" 3 "float zmin" 0
-        Shape "disk"
+        Shape "cone"
         LightSource "laser"
         Wibble 1 2 3 "float x" [ 1 ]
         NamedMaterial "nobody"

@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn kinds_and_values() {
-    let cases: [Case; 11] = [
+    let cases: [Case; 10] = [
         (
             "WorldBegin Shape \"sphere\" \"float radius\" @\"big\"",
             "expected a finite number, found `\"big\"`",
@@ -51,11 +51,6 @@ fn kinds_and_values() {
             "`radius`",
         ),
         ("WorldBegin Shape @\"spere\"", "unknown shape `spere`", "`sphere`"),
-        (
-            "WorldBegin Shape @\"curve\" \"float width\" 3",
-            "the shape `curve` is not supported yet",
-            "",
-        ),
     ];
     cases.iter().for_each(check);
 }
@@ -121,7 +116,7 @@ fn meshes() {
 
 #[test]
 fn quadrics_patches_and_cages() {
-    let cases: [Case; 15] = [
+    let cases: [Case; 13] = [
         (
             "WorldBegin Shape \"sphere\" @\"float zmin\" 2 \"float zmax\" 3",
             "nothing of the sphere",
@@ -175,14 +170,67 @@ fn quadrics_patches_and_cages() {
             "`levels` is 21, it must be from 0 to 20",
             "",
         ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn curves() {
+    let cases: [Case; 12] = [
+        ("WorldBegin Shape @\"curve\"", "no vertices", ""),
         (
-            "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" \"texture displacement\" @\"no such\"",
-            "no such",
+            "WorldBegin Shape \"curve\" \"point3 P\" @[0 0 0 1]",
+            "3 numbers a vertex",
             "",
         ),
         (
-            "WorldBegin Shape \"plymesh\" \"string filename\" \"x.ply\" \"float displacement.edgelength\" @0",
-            "must be positive",
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" @\"round\"",
+            "expected flat, cylinder, ribbon",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string basis\" @\"hermite\"",
+            "expected bezier, bspline",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"integer degree\" @4",
+            "it must be 2 or 3",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"float width\" @-1",
+            "must be 0 or more",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] @\"float width\" 0",
+            "the curve has no width",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" @\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0]",
+            "`P` has 5 points, expected 4 and 3 for each further segment",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"string basis\" \"bspline\" @\"point3 P\" [0 0 0 1 0 0 2 0 0]",
+            "expected 4 or more",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] @\"string type\" \"ribbon\"",
+            "needs normals",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"ribbon\" @\"normal N\" [0 0 1]",
+            "`N` is given 1 times, expected 2",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"ribbon\" @\"normal N\" [0 0 1 0 0 0]",
+            "normal 1 of `N` is zero",
             "",
         ),
     ];

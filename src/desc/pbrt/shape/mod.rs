@@ -1,6 +1,7 @@
 //! `Shape`.
 
 mod arrays;
+mod curve;
 mod mesh;
 mod quadric;
 
@@ -11,7 +12,7 @@ use super::reader::{ParamReader, unknown_type};
 use crate::desc::{DisplacementDesc, ShapeKind, Textured};
 use crate::error::Span;
 
-const KNOWN: [&str; 7] = [
+const KNOWN: [&str; 8] = [
     "trianglemesh",
     "plymesh",
     "bilinearmesh",
@@ -19,8 +20,8 @@ const KNOWN: [&str; 7] = [
     "sphere",
     "cylinder",
     "disk",
+    "curve",
 ];
-const LATER: [&str; 1] = ["curve"];
 
 /// A shape whose mesh may yet have to be read.
 #[derive(Debug)]
@@ -66,8 +67,9 @@ pub(super) fn read(
         "sphere" => quadric::sphere(&mut reader).map(RawKind::Whole),
         "cylinder" => quadric::cylinder(&mut reader).map(RawKind::Whole),
         "disk" => quadric::disk(&mut reader).map(RawKind::Whole),
+        "curve" => curve::curve(&mut reader).map(RawKind::Whole),
         _ => {
-            let classes = (&KNOWN[..], &LATER[..]);
+            let classes = (&KNOWN[..], &[][..]);
             let span = reader.span;
             unknown_type(reader.report(), "shape", kind, span, classes, "it is left out");
             return None;

@@ -6,7 +6,9 @@ use glam::{Vec2, Vec3};
 
 use super::Writer;
 use super::entity::{Entity, quoted};
-use crate::desc::{MediumId, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind, Textured};
+use crate::desc::{
+    CurveDesc, CurveKindDesc, MediumId, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind, Textured,
+};
 use crate::error::Result;
 
 /// Triangles of a mesh that stands in the file itself, at most.
@@ -65,6 +67,7 @@ impl Writer<'_> {
                     put_triangles(&mut entity, cage);
                     entity
                 }
+                ShapeKind::Curve(description) => curve(description),
                 ShapeKind::DisplacedMesh { mesh, displacement } => {
                     let mut entity = Entity::new("Shape", "plymesh");
                     entity
@@ -143,6 +146,32 @@ fn quadric(surface: &QuadricDesc, phi_max: f64) -> Entity {
         }
     }
     entity.float("phimax", phi_max);
+    entity
+}
+
+fn curve(curve: &CurveDesc) -> Entity {
+    let kind = match curve.kind {
+        CurveKindDesc::Flat => "flat",
+        CurveKindDesc::Cylinder => "cylinder",
+        CurveKindDesc::Ribbon => "ribbon",
+    };
+    let mut entity = Entity::new("Shape", "curve");
+    let [start, end] = curve.widths;
+    entity
+        .string("type", kind)
+        .float("width0", start)
+        .float("width1", end)
+        .integer("splitdepth", curve.split_depth.into());
+    // Each segment begins where the one before ends.
+    let first = curve.segments.first().map(|segment| segment[0]);
+    let rest = curve.segments.iter().flat_map(|segment| &segment[1..]).copied();
+    put_vectors(
+        &mut entity,
+        "point3",
+        "P",
+        &first.into_iter().chain(rest).collect::<Vec<_>>(),
+    );
+    put_vectors(&mut entity, "normal", "N", &curve.normals);
     entity
 }
 

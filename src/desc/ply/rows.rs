@@ -1,0 +1,91 @@
+//! Rows of a binary file that all have the same length, decoded in parallel.
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::Columns;
+use super::cursor::decode;
+use super::header::{Element, Encoding, Scalar};
+use crate::desc::MeshDesc;
+
+/// Rows that one task decodes, at least.
+const SPAN: usize = 1 << 14;
+
+/// Puts the vertices of `rows` into the mesh, which has none.
+pub(super) fn vertices(
+    rows: &[u8],
+    row: usize,
+    element: &Element,
+    columns: &Columns,
+    encoding: Encoding,
+    mesh: &mut MeshDesc,
+) {
+    let offsets: Vec<usize> = element
+        .properties
+        .iter()
+        .scan(0, |end, p| {
+            let start = *end;
+            *end += p.value.bytes();
+            Some(start)
+        })
+        .collect();
+    let at = |row: &[u8], i: usize| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32;
+    let vectors = |columns: [usize; 3], into: &mut Vec<Vec3>| {
+        let vector = |row| Vec3::from_array(columns.map(|i| at(row, i)));
+        rows.par_chunks_exact(row)
+            .with_min_len(SPAN)
+            .map(vector)
+            .collect_into_vec(into);
+    };
+    vectors(columns.position, &mut mesh.positions);
+    if let Some(normal) = columns.normal {
+        vectors(normal, &mut mesh.normals);
+    }
+    if let Some(uv) = columns.uv {
+        let pair = |row| Vec2::from_array(uv.map(|i| at(row, i)));
+        rows.par_chunks_exact(row)
+            .with_min_len(SPAN)
+            .map(pair)
+            .collect_into_vec(&mut mesh.uvs);
+    }
+}
+
+/// The bytes of a triangle, if faces are nothing but a list with a length of one byte and corners of four.
+pub(super) fn triangle_row(element: &Element) -> Option<usize> {
+    match &element.properties[..] {
+        [corners]
+            if matches!(corners.length, Some(Scalar::U8 | Scalar::I8))
+                && matches!(corners.value, Scalar::I32 | Scalar::U32) =>
+        {
+            Some(1 + 3 * 4)
+        }
+        _ => None,
+    }
+}
+
+/// The triangles of `rows`; `None` unless all faces are triangles whose corners are not negative.
+pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<Vec<[u32; 3]>> {
+    if !rows.par_chunks_exact(row).with_min_len(SPAN).all(|face| face[0] == 3) {
+        return None;
+    }
+    let corner = |face: &[u8], i: usize| {
+        let start = 1 + 4 * i;
+        let bytes = [face[start], face[start + 1], face[start + 2], face[start + 3]];
+        match encoding {
+            Encoding::BigEndian => u32::from_be_bytes(bytes),
+            _ => u32::from_le_bytes(bytes),
+        }
+    };
+    let triangle = |face: &[u8]| [corner(face, 0), corner(face, 1), corner(face, 2)];
+    let mut triangles = Vec::new();
+    rows.par_chunks_exact(row)
+        .with_min_len(SPAN)
+        .map(triangle)
+        .collect_into_vec(&mut triangles);
+    // A negative number, or one that is larger than any number of vertices that there can be, is told of elsewhere, with its place.
+    let is_corner = |&i: &u32| i <= i32::MAX as u32;
+    triangles
+        .par_iter()
+        .all(|face| face.iter().all(is_corner))
+        .then_some(triangles)
+}
