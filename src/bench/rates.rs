@@ -12,7 +12,7 @@ use super::streams::Stream;
 use crate::accel::{Accel, RayKind};
 use crate::geometry::{HitPacket, RayPacket};
 
-/// Waves that a thread of a backend traces in one turn: its tree is in the cache after the first.
+/// Waves that a thread of a backend traces in one turn.
 const TURN: usize = 16;
 
 /// Millions of rays a second.
@@ -70,11 +70,16 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
 }
 
 /// Traces waves on all threads; by wave, the seconds that each took.
+///
+/// They are traced once before that: else whoever comes after another way through the same tree would find it in the cache.
 fn trace_all(accel: &dyn Accel, kind: RayKind, waves: &[Vec<RayPacket>]) -> Vec<(usize, f64)> {
     let next = AtomicUsize::new(0);
     let of_thread = |_: rayon::BroadcastContext<'_>| {
         let mut room = Room::default();
         let mut times = Vec::new();
+        for wave in waves {
+            room.trace(accel, kind, wave);
+        }
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(wave) = waves.get(place) else { return times };

@@ -27,6 +27,8 @@ pub struct Plan {
     pub as_they_come: bool,
     /// Nodes of the tree above which sorted rays go through it one by one.
     pub most_nodes: usize,
+    /// Packets of a call of which the rays do so whatever the tree: few have little in common. Not for occlusion.
+    pub few_packets: usize,
 }
 
 fn active(packet: &RayPacket) -> u32 {
@@ -268,7 +270,7 @@ fn sorted<S: Lanes<N>, K: Interleaved, const N: usize>(
             };
         }
         let count = sort(packets, &call.tree.bounds, classes, places);
-        if call.tree.nodes.len() > plan.most_nodes {
+        if call.tree.nodes.len() > plan.most_nodes || packets.len() <= plan.few_packets {
             call.one_by_one::<false>(packets, &places[..count], (stack, stacks), |place, query| {
                 query.store(&mut hits[place / LANES], place % LANES);
             });

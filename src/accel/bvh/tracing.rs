@@ -46,6 +46,10 @@ enum Way {
 #[cfg(target_arch = "x86_64")]
 const MOST_NODES: [usize; 2] = [200, 1500];
 
+/// Packets of a call, as deep bounces make it, of which the rays do not go together through any tree, as measured.
+#[cfg(target_arch = "x86_64")]
+const FEW_PACKETS: usize = 8;
+
 impl Tracing {
     /// The fastest that the processor has.
     pub fn detect() -> Self {
@@ -91,6 +95,7 @@ impl Tracing {
         Plan {
             as_they_come: is_camera && matches!(self.way, Way::Usual | Way::Packets),
             most_nodes,
+            few_packets: if self.way == Way::Usual { FEW_PACKETS } else { 0 },
         }
     }
 

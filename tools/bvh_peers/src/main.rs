@@ -32,7 +32,7 @@ impl Obvhs {
         let point = |v: u32| glam::Vec3A::from_array(file.vertices[v as usize]);
         let triangle = |[a, b, c]: &[u32; 3]| obvhs::triangle::Triangle { v0: point(*a), v1: point(*b), v2: point(*c) };
         let triangles: Vec<_> = file.triangles.iter().map(triangle).collect();
-        let bvh = obvhs::cwbvh::builder::build_cwbvh_from_tris(&triangles, params, &mut Duration::ZERO);
+        let bvh = obvhs::cwbvh::builder::build_cwbvh_from_tris(&triangles, params, &mut Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
         Self { name, bvh, triangles }
     }
