@@ -43,11 +43,29 @@ fn main() {
         _ => "none".to_owned(),
     };
     println!("cargo::rustc-env=LUCERNA_EMBREE_VERSION={version}");
+    println!("cargo::rustc-env=LUCERNA_COMPILER={}", compiler());
     // An Embree outside the places that the dynamic linker knows.
     if let Some(rpath) = part("RPATH") {
         println!("cargo::rustc-link-arg=-Wl,-rpath,{rpath}");
     }
     write_table();
+}
+
+/// The compiler, the profile and the flags of this build, for reports of measurements.
+fn compiler() -> String {
+    let variable = |name: &str| env::var(name).unwrap_or_default();
+    let rustc = std::process::Command::new(variable("RUSTC")).arg("--version").output();
+    let version = rustc.map_or_else(
+        |_| "rustc".to_owned(),
+        |out| String::from_utf8_lossy(&out.stdout).trim().to_owned(),
+    );
+    let flags = variable("CARGO_ENCODED_RUSTFLAGS").replace('\u{1f}', " ");
+    let profile = format!("profile {}, opt-level {}", variable("PROFILE"), variable("OPT_LEVEL"));
+    [version, profile, flags]
+        .into_iter()
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Writes the table beside the program's objects.

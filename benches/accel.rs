@@ -11,6 +11,7 @@
 
 use std::hint::black_box;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -52,12 +53,18 @@ fn load(name: &str, backend: Backend) -> (Scene, View, Integrator) {
 }
 
 /// The streams of one render, recorded through the default backend.
-fn record(name: &str) -> std::sync::Arc<RayStreams> {
+fn record(name: &str) -> Vec<(RayKind, Vec<RayPacket>)> {
     let (scene, view, integrator) = load(name, Backend::default());
     let streams = RayStreams::new(PACKETS);
-    let scene = scene.map_accel(|inner| Box::new(Recorder::new(inner, streams.clone())));
+    let scene = scene.map_accel(|inner| Arc::new(Recorder::new(inner, streams.clone())));
     integrator.render(&scene, &view, &view.film(), &Silent);
-    streams
+    let recorded = streams.take();
+    let of_kind = |wanted: RayKind| {
+        let waves = recorded.iter().filter(|(kind, _, _)| *kind == wanted);
+        let packets = waves.flat_map(|(_, _, waves)| waves.iter().flatten().copied());
+        (wanted, packets.take(PACKETS).collect())
+    };
+    RayKind::ALL.map(of_kind).into()
 }
 
 /// The time of `waves`, of which `trace` tells that of each, `iterations` times.
@@ -85,8 +92,7 @@ fn benches(c: &mut Criterion) {
             .iter()
             .map(|&backend| (backend, load(name, backend).0))
             .collect();
-        for kind in RayKind::ALL {
-            let packets = streams.of(kind);
+        for (kind, packets) in streams {
             let rays: Vec<Ray> = packets
                 .iter()
                 .flat_map(|packet| {

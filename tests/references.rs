@@ -16,7 +16,7 @@ use common::reference::{Reference, Rule, Runs, compare};
 use common::render::Built;
 use common::{full_tier, in_shard, picture_of_difference, shared};
 use lucerna::accel::Backend;
-use lucerna::desc::{ParseOptions, load};
+use lucerna::desc::{Heuristic, IntegratorKind, ParseOptions, SamplerKind, load};
 use lucerna::image_io::read_exr;
 use lucerna::integrator::Integrator;
 use lucerna::scene::ViewOverrides;
@@ -27,7 +27,9 @@ struct Case {
     scene: PathBuf,
     color: ColorMode,
     /// Instead of the scene's.
-    max_depth: Option<u32>,
+    integrator: Option<IntegratorKind>,
+    /// Instead of the scene's: Mitsuba's files ask for independent numbers, which small bright lights take very many of.
+    sampler: Option<SamplerKind>,
     /// Samples a pixel of each of the 16 renders, in the normal tier.
     spp: u32,
 }
@@ -42,6 +44,10 @@ struct Comparison {
     splatted: bool,
     /// So many samples a pixel of each render, with a reserve, make the comparison conclusive.
     conclusive_spp: u32,
+    /// If the picture has heavy-tailed pixels, of caustics and of the reflections of small lights, of which a path tracer's variance
+    /// says too little: those whose stated error is more than this are left out of the judgement of z, and 1 % is the limit of the
+    /// means over the image.
+    heavy: Option<f32>,
 }
 
 impl Case {
@@ -74,7 +80,7 @@ impl Case {
                 let add = |(sum, value): (&mut f32, &f32)| *sum += value / FEWEST_RUNS as f32;
                 mean.iter_mut().zip(&picture).for_each(add);
             }
-            let report = compare(&runs, reference, &comparison.rule());
+            let report = compare(&runs, reference, &comparison.rule(reference));
             let name = format!("{} on {backend}, {spp} spp", comparison.name);
             println!("{name}: {report}");
             let problem = if spp < comparison.conclusive_spp {
@@ -93,14 +99,14 @@ impl Case {
     fn render(&self, backend: Backend, spp: u32, [width, height]: [usize; 2]) -> Vec<Vec<f32>> {
         let desc = load(&self.scene, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
         let built = Built::new(desc, backend, self.color);
-        let mut integrator = Integrator::from_desc(&built.desc.integrator);
-        if self.max_depth.is_some() {
-            integrator = integrator.with_max_depth(self.max_depth);
-        }
+        let mut desc = built.desc.integrator.clone();
+        desc.kind = self.integrator.unwrap_or(desc.kind);
+        let integrator = Integrator::from_desc(&desc);
         let picture = |seed| {
             let overrides = ViewOverrides {
                 resolution: Some([width as u32, height as u32]),
                 spp: Some(spp),
+                sampler: self.sampler,
                 seed,
                 ..ViewOverrides::default()
             };
@@ -114,12 +120,21 @@ impl Case {
 
 impl Comparison {
     /// The rule of the README: splats into neighbours correlate pixels.
-    fn rule(&self) -> Rule {
+    fn rule(&self, reference: &Reference) -> Rule {
+        let default = Rule::default();
         Rule {
             variance_factor: if self.splatted { 1.9 } else { 1.0 },
-            ..Rule::default()
+            mean_difference: self.heavy.map_or(default.mean_difference, |_| 0.01),
+            left_out: self.heavy.map(|heavy| heavy_pixels(reference, heavy)),
         }
     }
+}
+
+/// The pixels of a reference whose stated error is more than `heavy` of them in any channel.
+fn heavy_pixels(reference: &Reference, heavy: f32) -> Vec<bool> {
+    let values = reference.mean.chunks(3).zip(reference.variance.chunks(3));
+    let is_heavy = |(mean, variance): (&[f32], &[f32])| mean.iter().zip(variance).any(|(m, v)| v.sqrt() > heavy * m);
+    values.map(is_heavy).collect()
 }
 
 /// The values of the outermost pixels.
@@ -157,7 +172,8 @@ fn smallpt_in_rgb() {
     let case = Case {
         scene: Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/smallpt.pbrt"),
         color: ColorMode::Rgb,
-        max_depth: None,
+        integrator: None,
+        sampler: None,
         spp: 32,
     };
     if in_shard(0) {
@@ -165,16 +181,18 @@ fn smallpt_in_rgb() {
             name: "smallpt",
             splatted: false,
             conclusive_spp: 2600,
+            heavy: None,
         }]);
     }
 }
 
-/// The Cornell box of ../shared/scenes, unless that is missing.
-fn cornell_box(color: ColorMode, max_depth: Option<u32>, spp: u32) -> Option<Case> {
+/// A scene of ../shared/scenes, unless those are missing.
+fn shared_scene(name: &str, color: ColorMode, spp: u32) -> Option<Case> {
     Some(Case {
-        scene: shared("scenes")?.join("cornell-box/scene-v4.pbrt"),
+        scene: shared("scenes")?.join(name),
         color,
-        max_depth,
+        integrator: None,
+        sampler: name.ends_with(".xml").then_some(SamplerKind::ZSobol),
         spp,
     })
 }
@@ -183,29 +201,62 @@ fn cornell_box(color: ColorMode, max_depth: Option<u32>, spp: u32) -> Option<Cas
 /// less than 0.73^30 / (1 - 0.73) = 3e-4 of the light: one render serves both.
 #[test]
 fn cornell_box_in_spectral() {
-    if let Some(case) = cornell_box(ColorMode::Spectral, None, 320).filter(|_| in_shard(1)) {
+    if let Some(case) = shared_scene("cornell-box/scene-v4.pbrt", ColorMode::Spectral, 320).filter(|_| in_shard(1)) {
         case.check(&[
             Comparison {
                 name: "pbrt-cornell-box",
                 splatted: false,
                 conclusive_spp: 320,
+                heavy: None,
             },
             Comparison {
                 name: "mi3-cornell-box-spectral",
                 splatted: true,
                 conclusive_spp: 1300,
+                heavy: None,
             },
         ]);
     }
 }
 
 #[test]
-fn cornell_box_in_rgb() {
-    if let Some(case) = cornell_box(ColorMode::Rgb, Some(29), 96).filter(|_| in_shard(2)) {
+fn cornell_box_of_mitsuba_in_rgb() {
+    if let Some(case) = shared_scene("cornell-box/scene_mi3.xml", ColorMode::Rgb, 96).filter(|_| in_shard(2)) {
         case.check(&[Comparison {
             name: "mi3-cornell-box-rgb",
             splatted: true,
             conclusive_spp: 1000,
+            heavy: None,
+        }]);
+    }
+}
+
+#[test]
+fn veach_mis_of_mitsuba_in_rgb() {
+    if let Some(case) = shared_scene("veach-mis/scene_mi3.xml", ColorMode::Rgb, 32).filter(|_| in_shard(3)) {
+        case.check(&[Comparison {
+            name: "mi3-veach-mis-rgb",
+            splatted: true,
+            conclusive_spp: 1000,
+            heavy: Some(0.05),
+        }]);
+    }
+}
+
+/// The reference is of a path tracer, which has not found all that comes through the glass: below the shade of the tall lamp it is 10 %
+/// too dark, where Mitsuba itself with 16 times the samples agrees with ours. What it is sure of within 4 % is judged.
+#[test]
+fn veach_bidir_of_mitsuba_in_rgb() {
+    if let Some(case) = shared_scene("veach-bidir/scene_mi3.xml", ColorMode::Rgb, 12).filter(|_| in_shard(4)) {
+        let case = Case {
+            integrator: Some(IntegratorKind::Bdpt(Heuristic::Power)),
+            ..case
+        };
+        case.check(&[Comparison {
+            name: "mi3-veach-bidir-rgb",
+            splatted: true,
+            conclusive_spp: 1000,
+            heavy: Some(0.04),
         }]);
     }
 }

@@ -7,6 +7,7 @@ from. Needs nothing but Python 3. The same Python gives the same bytes.
 
 import math
 import pathlib
+import random
 
 import lamps
 import plants
@@ -191,6 +192,28 @@ def flag_text():
     )
 
 
+def lock_text():
+    """A lock of wavy hair that hangs along y, from 1.2 to -1.2, about 0.5 thick."""
+    numbers = random.Random(7)
+    lines = ["# By tools/make_scene_parts.py. A lock of hair."]
+    for _ in range(260):
+        angle, radius = 2 * math.pi * numbers.random(), 0.22 * math.sqrt(numbers.random())
+        phase, length = 0.7 * numbers.random(), 2.2 + 0.25 * numbers.random()
+        x0, z0 = radius * math.cos(angle), radius * math.sin(angle)
+        points = []
+        for k in range(-1, 11):
+            t = k / 9
+            spread = 1 - 0.35 * t
+            x = spread * x0 + 0.1 * math.sin(4.5 * t + phase)
+            z = spread * z0 + 0.1 * math.cos(4.5 * t + phase)
+            points.append(f"{x:.3f} {1.2 - length * t:.3f} {z:.3f}")
+        lines.append(
+            'Shape "curve" "string type" "cylinder" "string basis" "bspline" "float width0" 0.009 "float width1" 0.004'
+            f' "point3 P" [{"  ".join(points)}]'
+        )
+    return "\n".join(lines) + "\n"
+
+
 def brick(x, y):
     """Where a pixel of the 64 x 64 picture of bricks is: which brick, and its distances from the joints, in pixels."""
     row = y // 16
@@ -285,7 +308,12 @@ def main():
         path = PARTS / f"{name}.ply.gz"
         mesh.write(path)
         print(f"{path.name}: {len(mesh.triangles)} triangles, {path.stat().st_size} bytes")
-    for name, text in {"pennant": flag_text(), "poles": lamps.pole_text(), "forest": plants.forest_text()}.items():
+    for name, text in {
+        "forest": plants.forest_text(),
+        "lock": lock_text(),
+        "pennant": flag_text(),
+        "poles": lamps.pole_text(),
+    }.items():
         path = PARTS / f"{name}.pbrt"
         path.write_text(text)
         print(f"{path.name}: {len(text)} bytes")

@@ -34,6 +34,15 @@ impl RayKind {
     pub const ALL: [Self; 3] = [Self::Camera, Self::Shadow, Self::Bounce];
 }
 
+/// Where the paths come from whose rays are traced next, which only listeners such as [`record::Recorder`] want to know.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct RayOrigin {
+    /// Whether the paths began at lights: the rays are those of photons.
+    pub from_light: bool,
+    /// Scattering events of the paths so far.
+    pub depth: u32,
+}
+
 /// A candidate hit on [filtered](crate::geometry::Opacity::Filtered) geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterHit {
@@ -74,6 +83,11 @@ pub trait Accel: Send + Sync {
 
     /// Sets `tfar` to negative infinity in each lane that hits anything in (tnear, tfar]; all else stays.
     fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>);
+
+    /// Hears what the next queries of the calling thread are for. Answers do not depend on it.
+    fn announce(&self, origin: RayOrigin) {
+        let _ = origin;
+    }
 
     /// Whether the answer for a ray of this kind does not depend on the other rays of its packet or call, to the last bit.
     fn is_mate_independent(&self, kind: RayKind) -> bool;

@@ -1,76 +1,102 @@
 //! How fast backends answer the same rays.
 //!
 //! The backends take turns, a few waves each, in an order that changes from turn to turn, so that other work on the machine
-//! disturbs all of them alike; a wave's time is the median of its turns, and a stream's the sum over its waves.
+//! disturbs all of them alike; a wave's time is the median of its turns, and a stream's the sum over its waves. The spread is that
+//! of the quartiles, taken likewise.
 
 use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use super::streams::Stream;
 use crate::accel::{Accel, RayKind};
-use crate::geometry::{HitPacket, LANES, RayPacket};
+use crate::geometry::{HitPacket, RayPacket};
 
-/// Waves that a backend traces in one turn: its tree is in the cache after the first.
+/// Waves that a thread of a backend traces in one turn.
 const TURN: usize = 16;
 
-/// What a backend did with a stream.
+/// Millions of rays a second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// Rays in the stream.
-    pub rays: usize,
-    /// Of which met anything.
-    pub hits: usize,
-    /// Millions of rays in a second.
-    pub mrays: f64,
+    /// By the medians of the waves' times.
+    pub median: f64,
+    /// By the upper quartiles of these times.
+    pub least: f64,
+    /// By the lower quartiles.
+    pub most: f64,
 }
 
-/// Times every backend on `waves`, `turns` times each (at least once).
-pub fn measure(backends: &[&dyn Accel], kind: RayKind, waves: &[Vec<RayPacket>], turns: usize) -> Vec<Rate> {
-    let active = |packet: &RayPacket| (0..LANES).filter(|&lane| packet.is_active(lane)).count();
-    let rays = waves.iter().flatten().map(active).sum();
-    let mut seconds = vec![0.0; backends.len()];
-    let mut hits = vec![0; backends.len()];
-    let mut bench = Bench::default();
-    for (place, turn_waves) in waves.chunks(TURN).enumerate() {
-        let mut times = vec![vec![Vec::new(); turn_waves.len()]; backends.len()];
-        for turn in 0..turns.max(1) {
+/// Times every backend on a stream, `turns` times each (at least once), on all threads of the rayon pool that calls. Rates of several
+/// threads are those that they have together while all of them trace.
+pub fn measure(backends: &[&dyn Accel], stream: &Stream, turns: usize) -> Vec<Rate> {
+    let threads = rayon::current_num_threads();
+    let turns = turns.max(1);
+    let kind = stream.kind.ray_kind();
+    // The sums over waves of the lower quartile, the median and the upper quartile of its turns.
+    let mut seconds = vec![[0.0; 3]; backends.len()];
+    for (place, waves) in stream.waves.chunks(TURN * threads).enumerate() {
+        let mut times = vec![vec![Vec::with_capacity(turns); waves.len()]; backends.len()];
+        for turn in 0..turns {
             for i in 0..backends.len() {
                 let who = (i + turn + place) % backends.len();
-                let mut found = 0;
-                for (wave, times) in turn_waves.iter().zip(&mut times[who]) {
-                    times.push(bench.trace(backends[who], kind, wave));
-                    found += bench.hits(kind);
-                }
-                if turn == 0 {
-                    hits[who] += found;
+                for (wave, time) in trace_all(backends[who], kind, waves) {
+                    times[who][wave].push(time);
                 }
             }
         }
         for (seconds, times) in seconds.iter_mut().zip(&mut times) {
-            *seconds += times.iter_mut().map(|times| median(times)).sum::<f64>();
+            for times in times {
+                times.sort_unstable_by(f64::total_cmp);
+                for (total, share) in seconds.iter_mut().zip([0.25, 0.5, 0.75]) {
+                    *total += quantile(times, share);
+                }
+            }
         }
     }
-    let rate = |(seconds, hits): (f64, usize)| Rate {
-        rays,
-        hits,
-        mrays: rays as f64 / seconds / 1e6,
+    let work = stream.rays() as f64 * threads as f64 * 1e-6;
+    let rate = |[low, middle, high]: [f64; 3]| Rate {
+        median: work / middle,
+        least: work / high,
+        most: work / low,
     };
-    seconds.into_iter().zip(hits).map(rate).collect()
+    seconds.into_iter().map(rate).collect()
 }
 
-fn median(times: &mut [Duration]) -> f64 {
-    times.sort_unstable();
-    let middle = times.len() / 2;
-    (times[middle] + times[(times.len() - 1) / 2]).as_secs_f64() / 2.0
+/// Of numbers in order, the one that a share of them is below, linear between two.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    low + place.fract() * (high - low)
+}
+
+/// Traces waves on all threads; by wave, the seconds that each took.
+///
+/// They are traced once before that: else whoever comes after another way through the same tree would find it in the cache.
+fn trace_all(accel: &dyn Accel, kind: RayKind, waves: &[Vec<RayPacket>]) -> Vec<(usize, f64)> {
+    let next = AtomicUsize::new(0);
+    let of_thread = |_: rayon::BroadcastContext<'_>| {
+        let mut room = Room::default();
+        let mut times = Vec::new();
+        for wave in waves {
+            room.trace(accel, kind, wave);
+        }
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(wave) = waves.get(place) else { return times };
+            times.push((place, room.trace(accel, kind, wave).as_secs_f64()));
+        }
+    };
+    rayon::broadcast(of_thread).into_iter().flatten().collect()
 }
 
 /// Room for a wave: it is copied into place outside the measured time, as in a render it is in the cache.
 #[derive(Default)]
-struct Bench {
+struct Room {
     rays: Vec<RayPacket>,
     hits: Vec<HitPacket>,
 }
 
-impl Bench {
+impl Room {
     fn trace(&mut self, accel: &dyn Accel, kind: RayKind, wave: &[RayPacket]) -> Duration {
         self.rays.clear();
         self.rays.extend_from_slice(wave);
@@ -84,12 +110,19 @@ impl Bench {
         black_box((&self.rays, &self.hits));
         time
     }
+}
 
-    fn hits(&self, kind: RayKind) -> usize {
-        let lanes = (0..self.rays.len()).flat_map(|packet| (0..LANES).map(move |lane| (packet, lane)));
-        match kind {
-            RayKind::Shadow => lanes.filter(|&(p, lane)| self.rays[p].is_occluded(lane)).count(),
-            RayKind::Camera | RayKind::Bounce => lanes.filter(|&(p, lane)| self.hits[p].is_hit(lane)).count(),
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_linear_between_numbers() {
+        let numbers = [1.0, 2.0, 4.0];
+        assert_eq!(
+            [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| quantile(&numbers, share)),
+            [1.0, 1.5, 2.0, 3.0, 4.0]
+        );
+        assert_eq!(quantile(&[7.0], 0.75), 7.0);
     }
 }

@@ -1,112 +1,131 @@
-//! Streams of rays as a path tracer shoots them: waves of 32 x 32 pixels, camera rays in blocks of 4 x 2, then bounce by bounce.
+//! Streams of rays: what a render asks of a backend, by what the rays are for, in the waves in which it asks.
 
-use super::synthetic::{Numbers, Synthetic};
-use crate::accel::{Accel, RayKind};
-use crate::geometry::{HitPacket, LANES, Ray, RayPacket, RayQueue};
-use crate::math::Vec3;
+use std::fmt;
+use std::str::FromStr;
 
-/// Pixels of a wave along each axis.
-const TILE: usize = 32;
-/// Pixels of a packet of camera rays.
-const BLOCK: [usize; 2] = [4, 2];
+pub use crate::accel::record::Waves;
+use crate::accel::{RayKind, RayOrigin};
+use crate::geometry::{LANES, RayPacket};
 
-/// Rays of one kind, by wave.
-pub type Waves = Vec<Vec<RayPacket>>;
+/// Bounces that are told apart; deeper ones count as the last.
+pub const DEEPEST: u32 = 3;
 
-/// The streams of a render.
-#[derive(Clone, Debug, Default)]
-pub struct Streams {
-    /// By [`RayKind::ALL`].
-    pub waves: [Waves; 3],
+/// What the rays of a stream are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum StreamKind {
+    /// From the camera.
+    Camera,
+    /// Scattered so many times, from 1 to [`DEEPEST`].
+    Bounce(u32),
+    /// Towards a light or a vertex: whether anything is in the way.
+    Shadow,
+    /// On the way from a light.
+    Photon,
 }
 
-impl Streams {
-    /// The waves of a kind.
-    pub fn of(&self, kind: RayKind) -> &Waves {
-        &self.waves[index(kind)]
+impl StreamKind {
+    /// All there are, in the order of reports.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let bounces = (1..=DEEPEST).map(Self::Bounce);
+        [Self::Camera]
+            .into_iter()
+            .chain(bounces)
+            .chain([Self::Shadow, Self::Photon])
     }
-}
 
-fn index(kind: RayKind) -> usize {
-    match kind {
-        RayKind::Camera => 0,
-        RayKind::Shadow => 1,
-        RayKind::Bounce => 2,
-    }
-}
-
-/// The rays of paths of at most `bounces` bounces through a picture of `tiles` x `tiles` tiles, every surface being diffuse; one
-/// shadow ray from each of their vertices. The hits are found by `accel`.
-pub fn synthetic(scene: &Synthetic, accel: &dyn Accel, tiles: usize, bounces: usize) -> Streams {
-    let mut streams = Streams::default();
-    let numbers = &mut Numbers::new(7);
-    for tile in 0..tiles * tiles {
-        let corner = [tile % tiles * TILE, tile / tiles * TILE];
-        let mut rays = camera_rays(scene, corner, tiles * TILE, numbers);
-        for bounce in 0..=bounces {
-            let kind = if bounce == 0 { RayKind::Camera } else { RayKind::Bounce };
-            if rays.is_empty() {
-                break;
-            }
-            streams.waves[index(kind)].push(rays.packets().to_vec());
-            let (shadows, next) = scatter(scene, accel, kind, &rays, numbers);
-            if !shadows.is_empty() {
-                streams.waves[index(RayKind::Shadow)].push(shadows.packets().to_vec());
-            }
-            rays = next;
+    /// What queries of `kind` about paths of `origin` are.
+    pub fn of(kind: RayKind, origin: RayOrigin) -> Self {
+        match kind {
+            RayKind::Camera => Self::Camera,
+            RayKind::Shadow => Self::Shadow,
+            RayKind::Bounce if origin.from_light => Self::Photon,
+            RayKind::Bounce => Self::Bounce(origin.depth.clamp(1, DEEPEST)),
         }
     }
+
+    /// What a backend is told.
+    pub fn ray_kind(self) -> RayKind {
+        match self {
+            Self::Camera => RayKind::Camera,
+            Self::Shadow => RayKind::Shadow,
+            Self::Bounce(_) | Self::Photon => RayKind::Bounce,
+        }
+    }
+}
+
+impl fmt::Display for StreamKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Camera => f.pad("camera"),
+            Self::Bounce(DEEPEST) => f.pad(&format!("bounce {DEEPEST}+")),
+            Self::Bounce(depth) => f.pad(&format!("bounce {depth}")),
+            Self::Shadow => f.pad("shadow"),
+            Self::Photon => f.pad("photon"),
+        }
+    }
+}
+
+impl FromStr for StreamKind {
+    type Err = ();
+
+    fn from_str(name: &str) -> Result<Self, ()> {
+        Self::all().find(|kind| kind.to_string() == name).ok_or(())
+    }
+}
+
+/// Rays of one kind, in waves.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    /// What they are for.
+    pub kind: StreamKind,
+    /// The packets of each call.
+    pub waves: Waves,
+}
+
+/// Rays of packets that take part.
+pub fn active(packets: &[RayPacket]) -> usize {
+    let of_packet = |packet: &RayPacket| (0..LANES).filter(|&lane| packet.is_active(lane)).count();
+    packets.iter().map(of_packet).sum()
+}
+
+impl Stream {
+    /// Rays that take part.
+    pub fn rays(&self) -> usize {
+        self.waves.iter().map(|wave| active(wave)).sum()
+    }
+
+    /// Leaves out whole waves, evenly, until there are about `most` rays.
+    fn thin(&mut self, most: usize) {
+        let (rays, count) = (self.rays(), self.waves.len());
+        if rays <= most || count < 2 {
+            return;
+        }
+        let kept = (count * most).div_ceil(rays).max(1);
+        let mut place = 0;
+        self.waves.retain(|_| {
+            let keep = place * kept / count != (place + 1) * kept / count;
+            place += 1;
+            keep
+        });
+    }
+}
+
+/// Puts waves together by what they are for, with about `most` rays of each kind, in the order of [`StreamKind::all`].
+pub fn sort(waves: impl IntoIterator<Item = (StreamKind, Waves)>, most: usize) -> Vec<Stream> {
+    let mut streams: Vec<Stream> = StreamKind::all()
+        .map(|kind| Stream {
+            kind,
+            waves: Vec::new(),
+        })
+        .collect();
+    for (kind, waves) in waves {
+        for stream in streams.iter_mut().filter(|stream| stream.kind == kind) {
+            stream
+                .waves
+                .extend(waves.iter().filter(|wave| active(wave) > 0).cloned());
+        }
+    }
+    streams.iter_mut().for_each(|stream| stream.thin(most));
+    streams.retain(|stream| !stream.waves.is_empty());
     streams
-}
-
-fn camera_rays(scene: &Synthetic, corner: [usize; 2], size: usize, numbers: &mut Numbers) -> RayQueue {
-    let forward = (scene.target - scene.eye).normalize();
-    let right = forward.cross(Vec3::Y).normalize();
-    let up = right.cross(forward);
-    let mut queue = RayQueue::default();
-    for y in (0..TILE).step_by(BLOCK[1]) {
-        for x in (0..TILE).step_by(BLOCK[0]) {
-            for lane in 0..LANES {
-                let pixel = [x + lane % BLOCK[0] + corner[0], y + lane / BLOCK[0] + corner[1]];
-                let [px, py] = pixel.map(|p| (p as f32 + numbers.unit()) / size as f32 * 2.0 - 1.0);
-                let direction = (forward + 0.24 * (px * right - py * up)).normalize();
-                queue.push(&Ray::new(scene.eye, direction, 0.0));
-            }
-        }
-    }
-    queue
-}
-
-/// The shadow rays and the next bounce.
-fn scatter(
-    scene: &Synthetic,
-    accel: &dyn Accel,
-    kind: RayKind,
-    rays: &RayQueue,
-    numbers: &mut Numbers,
-) -> (RayQueue, RayQueue) {
-    let mut hits = vec![HitPacket::EMPTY; rays.packets().len()];
-    accel.intersect(kind, rays.packets(), &mut hits, None);
-    let (mut shadows, mut next) = (RayQueue::default(), RayQueue::default());
-    for (packet, hits) in rays.packets().iter().zip(&hits) {
-        for lane in 0..LANES {
-            let Some(hit) = hits.get(lane) else { continue };
-            let surface = scene.world.interaction(&packet.get(lane), hit);
-            let n = if surface.wo.dot(surface.ng) < 0.0 {
-                -surface.ng
-            } else {
-                surface.ng
-            };
-            let direction = (n + numbers.direction()).normalize_or(n);
-            next.push(&surface.spawn_ray(direction));
-            let [lamp, e, f] = scene.lamp;
-            let lamp = lamp + e * numbers.unit() + f * numbers.unit();
-            if (lamp - surface.p).dot(n) > 0.0 {
-                let mut ray = surface.spawn_ray(lamp - surface.p);
-                ray.tfar = 0.999;
-                shadows.push(&ray);
-            }
-        }
-    }
-    (shadows, next)
 }

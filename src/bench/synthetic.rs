@@ -1,10 +1,12 @@
 //! Worlds made for measuring: as many triangles as asked for, a box around them, so that paths go on, and a place for a camera.
 
+use std::fmt;
+use std::str::FromStr;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Geometry, Shape, TriangleMesh, World, WorldBuilder};
-use crate::math::Vec3;
+use crate::geometry::{Geometry, Group, Instance, Shape, TriangleMesh, World, WorldBuilder};
+use crate::math::{AnimatedTransform, DAffine3, DQuat, Vec3};
 
 /// What stands in the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +21,90 @@ pub enum Kind {
     Spheres,
     /// Thin cylinders across the box, of long, thin triangles in all directions.
     Hair,
+    /// Spheres of few meridians and many parallels, or the other way round: triangles a hundred times as long as wide.
+    Slivers,
+    /// Thin triangles from side to side of the box, along its diagonals: no box fits them.
+    Diagonals,
+    /// Instances of a sphere of a thousand triangles.
+    Instances,
+}
+
+impl Kind {
+    /// All, by name, with the greatest number of triangles.
+    pub const ALL: [(&'static str, Self, usize); 8] = [
+        ("box", Self::Box, 10_000_000),
+        ("terrain", Self::Terrain, 10_000_000),
+        ("soup", Self::Soup, 10_000_000),
+        ("spheres", Self::Spheres, 10_000_000),
+        ("hair", Self::Hair, 10_000_000),
+        ("slivers", Self::Slivers, 10_000_000),
+        ("diagonals", Self::Diagonals, 10_000_000),
+        ("instances", Self::Instances, 100_000_000),
+    ];
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = Self::ALL
+            .iter()
+            .find(|entry| entry.1 == *self)
+            .map_or("", |entry| entry.0);
+        f.pad(name)
+    }
+}
+
+/// A world to be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// What stands in it.
+    pub kind: Kind,
+    /// About so many triangles.
+    pub count: usize,
+}
+
+impl fmt::Display for Recipe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, count } = *self;
+        match count {
+            0 => write!(f, "{kind}"),
+            _ if count % 1_000_000 == 0 => write!(f, "{kind}:{}M", count / 1_000_000),
+            _ if count % 1000 == 0 => write!(f, "{kind}:{}k", count / 1000),
+            _ => write!(f, "{kind}:{count}"),
+        }
+    }
+}
+
+impl FromStr for Recipe {
+    type Err = Error;
+
+    /// `KIND:N`, N being a number such as `50000`, `50k`, `2M` or `1e6`; `box` has no N.
+    fn from_str(text: &str) -> Result<Self> {
+        let (name, count) = text.split_once(':').unwrap_or((text, ""));
+        let Some(&(_, kind, most)) = Kind::ALL.iter().find(|entry| entry.0 == name) else {
+            let names = Kind::ALL.map(|entry| entry.0).join(", ");
+            return Err(Error::Usage(format!(
+                "unknown synthetic world `{name}`: expected one of {names}"
+            )));
+        };
+        if kind == Kind::Box && count.is_empty() {
+            return Ok(Self { kind, count: 0 });
+        }
+        let (digits, unit) = match count.as_bytes().last() {
+            Some(b'k') => (&count[..count.len() - 1], 1e3),
+            Some(b'M') => (&count[..count.len() - 1], 1e6),
+            _ => (count, 1.0),
+        };
+        let number = digits.parse::<f64>().ok().map(|number| number * unit);
+        match number.filter(|number| (1.0..=most as f64).contains(number)) {
+            Some(number) => Ok(Self {
+                kind,
+                count: number as usize,
+            }),
+            None => Err(Error::Usage(format!(
+                "`{text}`: expected KIND:N with N triangles, 1 to {most}, as in {name}:50k or {name}:1e6"
+            ))),
+        }
+    }
 }
 
 /// A world, and where to look at it from.
@@ -74,6 +160,12 @@ struct Triangles {
 }
 
 impl Triangles {
+    fn mesh(self) -> Result<TriangleMesh> {
+        let count = self.indices.len();
+        TriangleMesh::new(vec![self.positions], self.indices)
+            .map_err(|error| Error::Usage(format!("a synthetic world of {count} triangles: {error}")))
+    }
+
     fn vertex(&mut self, p: Vec3) -> u32 {
         self.positions.push(p);
         self.positions.len() as u32 - 1
@@ -135,11 +227,48 @@ impl Triangles {
         for _ in 0..SPHERES {
             let center = Vec3::new(-0.8, 0.2, -0.8) + numbers.cube() * Vec3::new(1.6, 1.4, 1.6);
             let radius = 0.08 + 0.12 * numbers.unit();
-            self.grid(n, n.div_ceil(2), |u, v| {
-                let (sin, cos) = (std::f32::consts::TAU * u).sin_cos();
-                let (s, c) = (std::f32::consts::PI * v).sin_cos();
-                center + radius * Vec3::new(s * cos, c, s * sin)
-            });
+            self.sphere(center, radius, n, n.div_ceil(2));
+        }
+    }
+
+    fn sphere(&mut self, center: Vec3, radius: f32, meridians: usize, parallels: usize) {
+        self.grid(meridians, parallels, |u, v| {
+            let (sin, cos) = (std::f32::consts::TAU * u).sin_cos();
+            let (s, c) = (std::f32::consts::PI * v).sin_cos();
+            center + radius * Vec3::new(s * cos, c, s * sin)
+        });
+    }
+
+    fn slivers(&mut self, count: usize) {
+        const SPHERES: usize = 8;
+        const RATIO: f64 = 100.0;
+        let numbers = &mut Numbers::new(4);
+        let few = (count as f64 / (2.0 * SPHERES as f64 * RATIO)).sqrt().max(3.0) as usize;
+        let many = (count / (2 * SPHERES * few)).max(3);
+        for i in 0..SPHERES {
+            let center = Vec3::new(-0.7, 0.3, -0.7) + numbers.cube() * Vec3::new(1.4, 1.2, 1.4);
+            let [meridians, parallels] = if i % 2 == 0 { [few, many] } else { [many, few] };
+            self.sphere(center, 0.15 + 0.15 * numbers.unit(), meridians, parallels);
+        }
+    }
+
+    fn diagonals(&mut self, count: usize) {
+        let numbers = &mut Numbers::new(5);
+        let width = 0.4 / (count as f32).sqrt().max(1.0);
+        let (corner, room) = (Vec3::new(-0.9, 0.1, -0.9), Vec3::new(1.8, 1.8, 1.8));
+        for i in 0..count {
+            // Ends on opposite sides of the box, near the ends of a diagonal or not so near.
+            let mut a = numbers.cube() * 0.4;
+            let mut b = Vec3::ONE - numbers.cube() * 0.4;
+            for (axis, flip) in [(0, i & 1), (1, i >> 1 & 1)] {
+                if flip == 1 {
+                    (a[axis], b[axis]) = (1.0 - a[axis], 1.0 - b[axis]);
+                }
+            }
+            let (a, b) = (corner + room * a, corner + room * b);
+            let side = width * numbers.direction();
+            let corners = [a, b, b + side].map(|p| self.vertex(p));
+            self.indices.push(corners);
         }
     }
 
@@ -174,11 +303,42 @@ fn terrain(u: f32, v: f32) -> Vec3 {
     Vec3::new(x, y.clamp(0.02, 1.9), z)
 }
 
-/// A box from (-1, 0, -1) to (1, 2, 1), open towards the camera, with a lamp below its ceiling and about `count` triangles in it.
+/// Triangles of the sphere that is instanced.
+const INSTANCED: usize = 1000;
+
+fn instances(builder: &mut WorldBuilder, count: usize) -> Result<()> {
+    let mut sphere = Triangles::default();
+    sphere.sphere(Vec3::ZERO, 1.0, 32, INSTANCED / 64);
+    let geometry = builder.add_geometry(Geometry::opaque(Shape::Mesh(sphere.mesh()?)));
+    let group = builder.add_group(Group {
+        geometries: vec![geometry],
+        instances: Vec::new(),
+    });
+    let count = (count / INSTANCED).max(1);
+    let numbers = &mut Numbers::new(6);
+    let size = 0.4 / (count as f32).sqrt().max(2.0);
+    for _ in 0..count {
+        let center = Vec3::new(-0.9, 0.1, -0.9) + numbers.cube() * Vec3::new(1.8, 1.6, 1.8);
+        let turn = DQuat::from_axis_angle(numbers.direction().as_dvec3(), f64::from(numbers.unit()));
+        let size = size * (0.5 + numbers.unit()) * (Vec3::splat(0.7) + 0.6 * numbers.cube());
+        let place = DAffine3::from_scale_rotation_translation(size.as_dvec3(), turn, center.as_dvec3());
+        let world_from_object = AnimatedTransform::fixed(place)
+            .ok_or_else(|| Error::Usage("an instance of a synthetic world has no size".into()))?;
+        builder.root.instances.push(Instance {
+            group,
+            world_from_object,
+            mask: u32::MAX,
+        });
+    }
+    Ok(())
+}
+
+/// A box from (-1, 0, -1) to (1, 2, 1), open towards the camera, with a lamp below its ceiling and what is asked for in it.
 ///
 /// # Errors
 /// [`Error::Usage`] if there are more vertices than an index can tell apart.
-pub fn world(kind: Kind, count: usize) -> Result<Synthetic> {
+pub fn world(recipe: Recipe) -> Result<Synthetic> {
+    let count = recipe.count;
     let mut triangles = Triangles::default();
     let (x, y, z) = (2.0 * Vec3::X, 2.0 * Vec3::Y, 2.0 * Vec3::Z);
     let corner = Vec3::new(-1.0, 0.0, -1.0);
@@ -189,23 +349,24 @@ pub fn world(kind: Kind, count: usize) -> Result<Synthetic> {
     triangles.quad(corner + x, y, z);
     let lamp = [Vec3::new(-0.24, 1.98, -0.22), 0.47 * Vec3::X, 0.38 * Vec3::Z];
     triangles.quad(lamp[0], lamp[1], lamp[2]);
-    match kind {
+    let mut builder = WorldBuilder::default();
+    match recipe.kind {
         Kind::Box => {
             triangles.block(Vec3::new(-0.34, 0.0, -0.29), Vec3::new(0.6, 1.2, 0.6), 0.3);
             triangles.block(Vec3::new(0.33, 0.0, 0.37), Vec3::new(0.6, 0.6, 0.6), -0.3);
         }
         Kind::Terrain => {
-            let n = ((count / 2) as f64).sqrt() as usize;
+            let n = ((count / 2) as f64).sqrt().max(1.0) as usize;
             triangles.grid(n, n, terrain);
         }
         Kind::Soup => triangles.soup(count),
         Kind::Spheres => triangles.spheres(count),
         Kind::Hair => triangles.hair(count),
+        Kind::Slivers => triangles.slivers(count),
+        Kind::Diagonals => triangles.diagonals(count),
+        Kind::Instances => instances(&mut builder, count)?,
     }
-    let mesh = TriangleMesh::new(vec![triangles.positions], triangles.indices)
-        .map_err(|error| Error::Usage(format!("a synthetic world of {count} triangles: {error}")))?;
-    let mut builder = WorldBuilder::default();
-    let id = builder.add_geometry(Geometry::opaque(Shape::Mesh(mesh)));
+    let id = builder.add_geometry(Geometry::opaque(Shape::Mesh(triangles.mesh()?)));
     builder.root.geometries.push(id);
     Ok(Synthetic {
         world: Arc::new(builder.build()?),

@@ -18,7 +18,11 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         scene: &args.scene,
         camera: "",
     };
-    let desc = desc::load(&args.scene, &ParseOptions { lenient: args.lenient })?;
+    let options = ParseOptions {
+        lenient: args.lenient,
+        defines: args.defines.clone(),
+    };
+    let desc = desc::load(&args.scene, &options)?;
     reporter.warnings(&desc.warnings);
     for extension in pbrt::write(&desc, &args.output)? {
         let file = args.output.display();

@@ -52,7 +52,11 @@ struct Count {
 
 /// Prints what is in a scene.
 pub fn run(args: &InfoArgs) -> Result<()> {
-    let desc = desc::load(&args.scene, &ParseOptions { lenient: args.lenient })?;
+    let options = ParseOptions {
+        lenient: args.lenient,
+        defines: args.defines.clone(),
+    };
+    let desc = desc::load(&args.scene, &options)?;
     let channel = if args.json { Channel::Nobody } else { Channel::Person };
     Reporter {
         channel,
@@ -151,6 +155,9 @@ fn material_kind(material: &Material) -> &'static str {
         Material::Principled(_) => "principled",
         Material::Relief(relief) => material_kind(&relief.material),
         Material::Measured(_) => "measured",
+        Material::Sided(_) => "sided",
+        Material::Tinted(tinted) => material_kind(&tinted.material),
+        Material::Plastic(_) => "plastic",
         Material::Hair(_) => "hair",
         Material::Interface => "interface",
     }

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand. [`args`] holds what was typed; a subcommand turns it into what is meant.
 
 pub mod args;
+mod bench;
 mod compare;
 mod convert;
 mod info;
@@ -36,6 +37,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, print_error: &dyn Fn(&Error
         Command::Compare(args) => compare::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::List(args) => list::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

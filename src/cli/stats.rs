@@ -51,11 +51,57 @@ pub struct Statistics {
     pub rays_per_second: f64,
     /// Most memory that the process had so far; 0 where the system does not tell.
     pub peak_memory_bytes: u64,
+    /// Where the time went, if that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
     /// What the integrator's photons did, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photons: Option<Photons>,
     /// Samples that counted as black because they were not finite or negative.
     pub dropped_samples: u64,
+}
+
+/// Where the time of a render went. Thread seconds are those of all threads together.
+#[derive(Clone, Debug, Serialize)]
+pub struct Profile {
+    /// Wall-clock seconds: reading the scene.
+    pub load_seconds: f64,
+    /// Wall-clock seconds: building the backend.
+    pub build_seconds: f64,
+    /// Wall-clock seconds: rendering.
+    pub render_seconds: f64,
+    /// Of the render, what threads did.
+    pub thread_seconds: Vec<StageShare>,
+    /// For the same rays, what the fastest way of any backend would need.
+    pub fastest: Vec<Fastest>,
+    /// The thread seconds of the render over those that the fastest ways would need; 0 if there are none.
+    pub render_over_fastest: f64,
+}
+
+/// What threads did.
+#[derive(Clone, Debug, Serialize)]
+pub struct StageShare {
+    /// `trace camera`, `trace bounce`, `trace photon`, `trace shadow`, `sample`, `shade`, `film` or `other`.
+    pub stage: &'static str,
+    /// How long, all threads together.
+    pub seconds: f64,
+    /// The part of all that they did.
+    pub share: f64,
+    /// Rays, of a stage that traces them.
+    pub rays: u64,
+}
+
+/// The fastest way to trace the rays of one kind.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fastest {
+    /// `camera`, `bounce`, `photon` or `shadow`.
+    pub kind: &'static str,
+    /// Who traces them, and how.
+    pub way: String,
+    /// Millions of rays a second, all threads together.
+    pub mrays: f64,
+    /// Thread seconds for the rays of the render.
+    pub seconds: f64,
 }
 
 /// Photons of all passes.

@@ -11,6 +11,17 @@ pub struct IntegratorDesc {
     pub kind: IntegratorKind,
 }
 
+impl Default for IntegratorDesc {
+    /// Path tracing with 5 bounces, as in pbrt-v4.
+    fn default() -> Self {
+        Self {
+            max_depth: Some(5),
+            light_sampler: LightSamplerKind::default(),
+            kind: IntegratorKind::Path(PathDesc::default()),
+        }
+    }
+}
+
 /// The estimators, with the parameters that are theirs alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntegratorKind {
@@ -26,6 +37,26 @@ pub enum IntegratorKind {
     Photon(PhotonDesc),
     /// Photon mapping in ever finer passes.
     Sppm(SppmDesc),
+    /// How open surfaces are, instead of light.
+    Occlusion(OcclusionDesc),
+}
+
+/// Parameters of [`IntegratorKind::Occlusion`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OcclusionDesc {
+    /// Whether directions are drawn in proportion to the cosine; if not, all alike.
+    pub cosine: bool,
+    /// How far away things may be that block, in scene units, positive; `None`: any distance.
+    pub max_distance: Option<f32>,
+}
+
+impl Default for OcclusionDesc {
+    fn default() -> Self {
+        Self {
+            cosine: true,
+            max_distance: None,
+        }
+    }
 }
 
 /// Parameters of [`IntegratorKind::Path`].

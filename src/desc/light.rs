@@ -47,6 +47,8 @@ pub enum LightKind {
         angle: f64,
         /// Over how much of it the light falls off, in degrees; default 5; from 0 to `angle`.
         delta: f64,
+        /// How it falls off.
+        falloff: SpotFalloff,
     },
     /// At the origin, with an intensity by direction.
     Goniometric {
@@ -76,6 +78,16 @@ pub enum LightKind {
         /// (p3 - p0) x (p1 - p0) see it.
         portal: Option<[DVec3; 4]>,
     },
+}
+
+/// How the light of a spot falls off towards its rim.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpotFalloff {
+    /// By a smooth step over the cosine, as in pbrt.
+    #[default]
+    Smooth,
+    /// In proportion to the angle to the rim, as in Mitsuba.
+    Linear,
 }
 
 /// What a shape emits: the same radiance in all directions, on the side its normal points to. Normalised as for [`LightDesc`]; the

@@ -95,6 +95,24 @@ pub enum MaterialKind {
         /// How much there is of the second.
         amount: Textured<f32>,
     },
+    /// One material seen from the side of the shading normal, another from behind; black without one. Neither may transmit light.
+    Sided {
+        /// On the side of the shading normal.
+        front: Option<MaterialId>,
+        /// On the other side.
+        back: Option<MaterialId>,
+    },
+    /// A conductor, dielectric or thin dielectric of which less light comes than is reflected and transmitted.
+    Tinted {
+        /// Which.
+        material: MaterialId,
+        /// Factor of what is reflected.
+        reflectance: Textured<SpectrumDesc>,
+        /// Factor of what is transmitted.
+        transmittance: Textured<SpectrumDesc>,
+    },
+    /// Mitsuba's `plastic` and `roughplastic`.
+    Plastic(PlasticDesc),
     /// A surface by the parameters of artists.
     Principled(PrincipledDesc),
     /// A surface by measurements.
@@ -153,6 +171,21 @@ pub struct CoatDesc {
     pub samples: u32,
 }
 
+/// A diffuse base under a dielectric boundary, in closed form.
+#[derive(Clone, Debug)]
+pub struct PlasticDesc {
+    /// Albedo of the base.
+    pub diffuse_reflectance: Textured<SpectrumDesc>,
+    /// Factor of what the boundary reflects.
+    pub specular_reflectance: Textured<SpectrumDesc>,
+    /// Index of refraction of the inside over that of the outside; positive.
+    pub eta: f32,
+    /// Whether light that the boundary reflects back inside takes on more of the base's color each time.
+    pub nonlinear: bool,
+    /// How rough the boundary is.
+    pub roughness: RoughnessDesc,
+}
+
 /// The parameters of Mitsuba's `principled`, all in [0, 1] but for `eta`.
 #[derive(Clone, Debug)]
 pub struct PrincipledDesc {
@@ -178,6 +211,8 @@ pub struct PrincipledDesc {
     pub clearcoat: Textured<f32>,
     /// How smooth it is.
     pub clearcoat_gloss: Textured<f32>,
+    /// Whether its lobes are added up as Mitsuba adds them, which may gain energy and which is not reciprocal.
+    pub as_in_mitsuba: bool,
 }
 
 /// How a conductor's Fresnel reflectance is given.
@@ -216,6 +251,8 @@ pub struct RoughnessDesc {
     pub remap: bool,
     /// How slopes are distributed.
     pub distribution: DistributionDesc,
+    /// Whether facets are masked and shadowed independently of each other, as in Mitsuba; if not, by their heights, as in pbrt.
+    pub separable_masking: bool,
 }
 
 /// A spectrum as it was typed. What it means (albedo, emission, unbounded) depends on where it is used.

@@ -4,7 +4,8 @@
 //! transforms are matrices, materials and lights are names with parameters already checked for type and range. The scene builder
 //! turns a description into things that rays can meet.
 //!
-//! The formats: pbrt-v4 ([`pbrt`]), with meshes in PLY ([`ply`]); meshes in OBJ ([`obj`]) or PLY by themselves ([`bare`]). Lucerna's extensions to pbrt-v4:
+//! The formats: pbrt-v4 ([`pbrt`]) and Mitsuba 3 ([`mitsuba`]), with meshes in PLY ([`ply`]), OBJ ([`obj`]) and Mitsuba's own
+//! format ([`serialized`]); meshes in PLY or OBJ by themselves ([`bare`]). Lucerna's extensions to pbrt-v4:
 //!
 //! - several `Camera` directives before `WorldBegin` are several views, named by `"string name"`; film, sampler and filter are
 //!   shared by all of them;
@@ -18,17 +19,22 @@
 
 pub mod bare;
 mod bytes;
+mod images;
 mod integrator;
 mod kinds;
 mod light;
 mod material;
 mod measured_media;
 mod medium;
+pub mod mitsuba;
 pub mod obj;
 pub mod pbrt;
 pub mod ply;
+mod report;
 pub mod rgl;
+pub mod serialized;
 mod shape;
+mod suggest;
 mod texture;
 mod view;
 
@@ -41,17 +47,17 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 pub use crate::sampling::SamplerKind;
 pub use crate::spectrum::ColorSpace;
 pub use integrator::{
-    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc,
-    PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
+    Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc,
+    PhotonDesc, PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
 };
 pub use kinds::{
     Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS,
     TEXTURES,
 };
-pub use light::{AreaLightDesc, LightDesc, LightKind};
+pub use light::{AreaLightDesc, LightDesc, LightKind, SpotFalloff};
 pub use material::{
-    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
-    ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
+    PrincipledDesc, ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
 pub use medium::{MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
@@ -179,14 +185,19 @@ pub struct InstanceDesc {
 }
 
 /// How strictly a file is read.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ParseOptions {
     /// Unknown and unsupported parameters, types and directives are warnings where something sensible can stand in for them.
     pub lenient: bool,
+    /// Names and values of parameters (`$name`) of a Mitsuba scene, instead of its defaults.
+    pub defines: Vec<(String, String)>,
 }
 
-/// Reads a scene file, or a mesh on a neutral stage (see [`bare`]); the format goes by the extension (`.pbrt`, `.ply`, `.obj`; each may
-/// be followed by `.gz`).
+/// The extensions of the files that [`load`] reads.
+const EXTENSIONS: &str = ".pbrt (pbrt-v4), .xml (Mitsuba 3), .ply or .obj; .pbrt, .ply and .obj also with .gz";
+
+/// Reads a scene file, or a mesh on a neutral stage (see [`bare`]); the format goes by the extension (`.pbrt`, `.xml`, `.ply`, `.obj`;
+/// all but `.xml` may be followed by `.gz`).
 ///
 /// # Errors
 ///
@@ -196,11 +207,13 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
+    } else if name.ends_with(".xml") {
+        mitsuba::load(path, options)
     } else if bare::is_mesh(path) {
         bare::load(path, None, options)
     } else {
         Err(Error::Usage(format!(
-            "{}: not a scene file that Lucerna reads (expected the extension .pbrt, .ply or .obj, or one of these and .gz)",
+            "{}: not a scene file that Lucerna reads (expected the extension {EXTENSIONS})",
             path.display()
         )))
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3, Vec2, Vec3};
+use glam::{DAffine3, DVec3, Mat2, Vec2, Vec3};
 
 use super::SpectrumDesc;
 use crate::error::Span;
@@ -153,6 +153,13 @@ pub enum MappingDesc {
         /// `udelta` and `vdelta`.
         delta: Vec2,
     },
+    /// The surface's coordinates times a matrix plus `delta`.
+    Affine {
+        /// Turns and shears them.
+        matrix: Mat2,
+        /// Added after.
+        delta: Vec2,
+    },
     /// Polar angle and azimuth in texture space.
     Spherical,
     /// Azimuth and z in texture space.
@@ -239,6 +246,8 @@ pub enum WrapDesc {
     Black,
     /// Its edge.
     Clamp,
+    /// The image and its mirror image in turn.
+    Mirror,
     /// The image flipped, as an octahedral map of the sphere continues.
     OctahedralSphere,
 }

@@ -26,7 +26,7 @@ pub use self::false_color::false_colors;
 pub use self::image::{Chromaticities, Image, Window};
 pub use self::metadata::ImageMetadata;
 pub use self::metrics::Comparison;
-pub use self::output::{ImageFormat, PendingOutput, Written};
+pub use self::output::{ImageFormat, PendingOutput, Written, replace_file};
 pub use self::png::read_png;
 
 use crate::{Error, Result};

@@ -179,6 +179,18 @@ fn written_temporary(directory: &Path, bytes: &[u8]) -> io::Result<NamedTempFile
     Ok(file)
 }
 
+/// Replaces the file `path`, which need not exist, by one that holds `bytes`, all at once.
+///
+/// # Errors
+/// [`Error::Io`]; then the file is as it was.
+pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let replaced = follow_links(path).and_then(|target| {
+        let file = written_temporary(directory_of(&target), bytes)?;
+        file.persist(&target).map_err(|error| error.error)
+    });
+    replaced.map(|_| ()).map_err(|source| Error::io("write", path, source))
+}
+
 /// Makes a rename in `directory` last through a power cut, where the system can; the file's contents are safe already.
 fn sync_directory(directory: &Path) {
     let _ = File::open(directory).and_then(|directory| directory.sync_all());

@@ -27,11 +27,13 @@ mod fault;
 mod kajiya;
 mod lane;
 mod numbers;
+mod occlusion;
 mod path;
 mod photon;
 mod schedule;
 mod shadow;
 mod stage;
+mod times;
 mod volume;
 mod wave;
 
@@ -41,15 +43,17 @@ pub use bdpt::{BdptIntegrator, Pyramid, Strategies, StrategyLayer};
 #[doc(hidden)]
 pub use fault::Fault;
 pub use kajiya::KajiyaIntegrator;
+pub use occlusion::OcclusionIntegrator;
 pub use path::PathIntegrator;
 #[doc(hidden)]
 pub use photon::{KdTree, Nearest};
 pub use photon::{Limits, PhotonCount, PhotonIntegrator, ShownMap, SppmIntegrator};
 pub use schedule::{Progress, Silent};
+pub use times::StageTimes;
 
 use crate::desc::{
-    Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc, PhotonDesc, SppmDesc, Strategy,
-    Terms,
+    Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc, PhotonDesc,
+    SppmDesc, Strategy, Terms,
 };
 use crate::film::Film;
 use crate::material::Material;
@@ -70,11 +74,21 @@ pub enum Integrator {
     Photon(PhotonIntegrator),
     /// Progressive photon mapping.
     Sppm(SppmIntegrator),
+    /// Ambient occlusion.
+    Occlusion(OcclusionIntegrator),
 }
 
 impl Integrator {
     /// The names by which a scene or a command line chooses one.
-    pub const NAMES: &[&str] = &["path", "kajiya", "bdpt", "lightpath", "photon", "sppm"];
+    pub const NAMES: &[&str] = &[
+        "path",
+        "kajiya",
+        "bdpt",
+        "lightpath",
+        "photon",
+        "sppm",
+        "ambientocclusion",
+    ];
 
     /// The one that a scene asks for.
     pub fn from_desc(desc: &IntegratorDesc) -> Self {
@@ -118,6 +132,10 @@ impl Integrator {
                 parameters,
                 shown: None,
             }),
+            IntegratorKind::Occlusion(OcclusionDesc { cosine, max_distance }) => Self::Occlusion(OcclusionIntegrator {
+                cosine,
+                max_distance: max_distance.unwrap_or(f32::INFINITY),
+            }),
             IntegratorKind::Sppm(parameters) => Self::Sppm(SppmIntegrator {
                 max_depth,
                 parameters,
@@ -137,13 +155,17 @@ impl Integrator {
             "lightpath" => IntegratorKind::LightTracer,
             "photon" => IntegratorKind::Photon(PhotonDesc::default()),
             "sppm" => IntegratorKind::Sppm(SppmDesc::default()),
+            "ambientocclusion" => IntegratorKind::Occlusion(OcclusionDesc::default()),
             _ => IntegratorKind::Path(PathDesc::default()),
         };
-        let (Self::Path(PathIntegrator { max_depth, .. })
-        | Self::Kajiya(KajiyaIntegrator { max_depth, .. })
-        | Self::Bdpt(BdptIntegrator { max_depth, .. })
-        | Self::Photon(PhotonIntegrator { max_depth, .. })
-        | Self::Sppm(SppmIntegrator { max_depth, .. })) = self;
+        let max_depth = match self {
+            Self::Path(PathIntegrator { max_depth, .. })
+            | Self::Kajiya(KajiyaIntegrator { max_depth, .. })
+            | Self::Bdpt(BdptIntegrator { max_depth, .. })
+            | Self::Photon(PhotonIntegrator { max_depth, .. })
+            | Self::Sppm(SppmIntegrator { max_depth, .. }) => max_depth,
+            Self::Occlusion(_) => IntegratorDesc::default().max_depth,
+        };
         Self::from_desc(&IntegratorDesc {
             max_depth,
             light_sampler: LightSamplerKind::default(),
@@ -162,6 +184,7 @@ impl Integrator {
             },
             Self::Photon(_) => "photon",
             Self::Sppm(_) => "sppm",
+            Self::Occlusion(_) => "ambientocclusion",
         }
     }
 
@@ -174,6 +197,7 @@ impl Integrator {
             Self::Bdpt(bdpt) => bdpt.max_depth = max_depth,
             Self::Photon(photon) => photon.max_depth = max_depth,
             Self::Sppm(sppm) => sppm.max_depth = max_depth,
+            Self::Occlusion(_) => {}
         }
         self
     }
@@ -183,7 +207,7 @@ impl Integrator {
     pub fn with_strategy(self, strategy: Strategy) -> Option<Self> {
         match self {
             Self::Path(path) => Some(Self::Path(PathIntegrator { strategy, ..path })),
-            Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) | Self::Sppm(_) => None,
+            Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) | Self::Sppm(_) | Self::Occlusion(_) => None,
         }
     }
 
@@ -193,7 +217,7 @@ impl Integrator {
         match &mut self {
             Self::Photon(photon) => photon.parameters.terms = terms,
             Self::Sppm(sppm) => sppm.parameters.terms = terms,
-            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) => return None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Occlusion(_) => return None,
         }
         Some(self)
     }
@@ -206,7 +230,7 @@ impl Integrator {
                 shown: Some(map),
                 ..photon
             })),
-            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) | Self::Occlusion(_) => None,
         }
     }
 
@@ -215,7 +239,7 @@ impl Integrator {
     pub fn with_limits(self, limits: Limits) -> Option<Self> {
         match self {
             Self::Sppm(sppm) => Some(Self::Sppm(SppmIntegrator { limits, ..sppm })),
-            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) => None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Photon(_) | Self::Occlusion(_) => None,
         }
     }
 
@@ -223,7 +247,7 @@ impl Integrator {
     pub fn samples_multiple(&self) -> u32 {
         match self {
             Self::Photon(photon) => photon.parameters.passes,
-            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) => 1,
+            Self::Path(_) | Self::Kajiya(_) | Self::Bdpt(_) | Self::Sppm(_) | Self::Occlusion(_) => 1,
         }
     }
 
@@ -242,13 +266,23 @@ impl Integrator {
                 "that comes by way of mirrors or clear glass and is seen by way of such surfaces",
                 "`sppm` and `photon` find it",
             ),
-            Self::Photon(_) | Self::Sppm(_) => return None,
+            Self::Photon(_) | Self::Sppm(_) | Self::Occlusion(_) => return None,
         };
         let whose = if lights == 1 { "a light" } else { "lights" };
         Some(format!(
             "`{}` cannot find the light of {whose} without extent {missed}: {found_by}",
             self.name()
         ))
+    }
+
+    /// Whether it shows light.
+    pub fn needs_lights(&self) -> bool {
+        !matches!(self, Self::Occlusion(_))
+    }
+
+    /// Whether it connects light paths to the camera.
+    pub fn splats(&self) -> bool {
+        matches!(self, Self::Bdpt(_))
     }
 
     /// What of `scene` it cannot render at all, for people; `None` if there is nothing.
@@ -264,7 +298,7 @@ impl Integrator {
     pub fn film(&self, view: &View) -> Film {
         match self {
             Self::Sppm(sppm) if sppm.limits.noise.is_some() => view.film().with_squares(),
-            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => view.film(),
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) | Self::Occlusion(_) => view.film(),
             Self::Bdpt(_) => view.film().with_splats(),
         }
     }
@@ -273,7 +307,7 @@ impl Integrator {
     pub fn film_of_strategies(&self, view: &View, pyramid: Pyramid) -> Option<Film> {
         match self {
             Self::Bdpt(bdpt) => bdpt.film_of_strategies(view, pyramid),
-            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) => None,
+            Self::Path(_) | Self::Kajiya(_) | Self::Photon(_) | Self::Sppm(_) | Self::Occlusion(_) => None,
         }
     }
 
@@ -291,6 +325,7 @@ impl Integrator {
             Self::Bdpt(bdpt) => schedule::render_tiles(scene, view, film, bdpt, samples, progress),
             Self::Photon(photon) => photon.render(Stand { scene, view, film }, progress),
             Self::Sppm(sppm) => sppm.render(Stand { scene, view, film }, progress),
+            Self::Occlusion(occlusion) => schedule::render_tiles(scene, view, film, occlusion, samples, progress),
         };
         stats.render_time = start.elapsed();
         stats
@@ -302,12 +337,14 @@ impl Integrator {
 pub struct RenderStats {
     /// Wall-clock time of the render.
     pub render_time: Duration,
-    /// Time inside the backend, summed over threads.
-    pub backend_time: Duration,
+    /// Where the threads' time went.
+    pub times: StageTimes,
     /// Rays from the camera.
     pub camera_rays: u64,
-    /// Rays scattered by surfaces.
+    /// Rays scattered by surfaces, on the way from the camera.
     pub bounce_rays: u64,
+    /// Rays on the way from lights.
+    pub photon_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
     /// The samples of each pixel that were rendered, if fewer than were planned.
@@ -337,14 +374,15 @@ const DROPPED_KEPT: usize = 16;
 impl RenderStats {
     /// All rays.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.bounce_rays + self.shadow_rays
+        self.camera_rays + self.bounce_rays + self.photon_rays + self.shadow_rays
     }
 
     /// Adds what another thread did.
     fn merge(&mut self, other: Self) {
-        self.backend_time += other.backend_time;
+        self.times += other.times;
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
+        self.photon_rays += other.photon_rays;
         self.shadow_rays += other.shadow_rays;
         self.caustic_photons += other.caustic_photons;
         self.global_photons += other.global_photons;

@@ -257,13 +257,13 @@ impl<E: Estimator> Stage<'_, '_, E> {
     pub(super) fn flush_shadows(&mut self, stats: &mut RenderStats) {
         stats.shadow_rays += (self.shadows.len() + self.splats.len()) as u64;
         let (slots, landed, memory) = (&mut *self.slots, &mut *self.landed, &mut *self.memory);
-        stats.backend_time += self.shadows.flush(self.scene, |Contribution { slot, note, value }| {
+        stats.times.shadow += self.shadows.flush(self.scene, |Contribution { slot, note, value }| {
             slots[slot as usize].l += value;
             if note != NO_NOTE {
                 E::arrived(memory, note);
             }
         });
-        stats.backend_time += self.splats.flush(self.scene, |splat| {
+        stats.times.shadow += self.splats.flush(self.scene, |splat| {
             landed.push(splat);
             if splat.note != NO_NOTE {
                 E::arrived(memory, splat.note);

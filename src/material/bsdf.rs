@@ -2,7 +2,8 @@
 
 use super::sides::Sides;
 use super::{
-    Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Principled, ThinDielectric,
+    Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered, Measured, OrenNayar, Plastic,
+    Principled, ThinDielectric, Tinted,
 };
 use crate::math::{Frame, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
@@ -157,6 +158,9 @@ pub enum Lobe<'a> {
     Layered(Layered),
     Principled(Principled<'a>),
     Measured(Measured<'a>),
+    Plastic(Plastic<'a>),
+    Burley(Burley),
+    Tinted(Tinted),
     Hair(Hair),
 }
 
@@ -180,6 +184,9 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.eval(wo, wi, mode),
             Self::Principled(lobe) => lobe.eval(wo, wi, mode),
             Self::Measured(lobe) => lobe.eval(wo, wi),
+            Self::Plastic(lobe) => lobe.eval(wo, wi),
+            Self::Burley(lobe) => lobe.eval(wo, wi, mode),
+            Self::Tinted(lobe) => lobe.eval(wo, wi, mode),
             Self::Hair(lobe) => lobe.eval(wo, wi),
             Self::Conductor(lobe) => lobe.eval(wo, wi),
             Self::Dielectric(lobe) => lobe.eval(wo, wi, mode),
@@ -204,6 +211,9 @@ impl Lobe<'_> {
             Self::Layered(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Principled(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Measured(lobe) => lobe.sample_f(wo, u),
+            Self::Plastic(lobe) => lobe.sample_f(wo, u_lobe, u),
+            Self::Burley(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
+            Self::Tinted(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
             Self::Hair(lobe) => lobe.sample_f(wo, u_lobe, u),
             Self::Conductor(lobe) => lobe.sample_f(wo, u),
             Self::Dielectric(lobe) => lobe.sample_f(wo, u_lobe, u, mode),
@@ -260,9 +270,12 @@ impl<'a> Bsdf<'a> {
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
             | Lobe::Principled(_)
+            | Lobe::Plastic(_)
+            | Lobe::Burley(_)
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,
             Lobe::ThinDielectric(_) => true,
+            Lobe::Tinted(lobe) => lobe.is_delta(),
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_delta(),
             Lobe::Dielectric(lobe) => lobe.is_delta(),
@@ -280,9 +293,14 @@ impl<'a> Bsdf<'a> {
         // Where a map has bent that normal, some of them reflect.
         self.sides.is_some()
             || match &self.lobe {
-                Lobe::Diffuse(_) | Lobe::OrenNayar(_) | Lobe::Conductor(_) | Lobe::Layered(_) | Lobe::Measured(_) => {
-                    false
-                }
+                Lobe::Diffuse(_)
+                | Lobe::OrenNayar(_)
+                | Lobe::Conductor(_)
+                | Lobe::Layered(_)
+                | Lobe::Plastic(_)
+                | Lobe::Measured(_) => false,
+                Lobe::Tinted(lobe) => lobe.transmits(),
+                Lobe::Burley(lobe) => lobe.transmits(),
                 Lobe::DiffuseTransmission(_)
                 | Lobe::Dielectric(_)
                 | Lobe::ThinDielectric(_)
@@ -295,6 +313,7 @@ impl<'a> Bsdf<'a> {
     pub fn has_delta(&self) -> bool {
         match &self.lobe {
             Lobe::Layered(lobe) => lobe.has_delta(),
+            Lobe::Plastic(lobe) => lobe.has_delta(),
             _ => self.is_delta(),
         }
     }
@@ -306,8 +325,11 @@ impl<'a> Bsdf<'a> {
             Lobe::Diffuse(_)
             | Lobe::OrenNayar(_)
             | Lobe::DiffuseTransmission(_)
+            | Lobe::Plastic(_)
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,
+            Lobe::Tinted(lobe) => lobe.is_specular(),
+            Lobe::Burley(lobe) => lobe.is_specular(),
             Lobe::ThinDielectric(_) => true,
             Lobe::Layered(lobe) => lobe.is_delta(),
             Lobe::Conductor(lobe) => lobe.is_specular(),
@@ -337,6 +359,9 @@ impl<'a> Bsdf<'a> {
             | Lobe::DiffuseTransmission(_)
             | Lobe::ThinDielectric(_)
             | Lobe::Principled(_)
+            | Lobe::Plastic(_)
+            | Lobe::Burley(_)
+            | Lobe::Tinted(_)
             | Lobe::Measured(_)
             | Lobe::Hair(_) => false,
         }

@@ -21,6 +21,8 @@ pub struct Microfacets {
     distribution: Distribution,
     alpha_x: f32,
     alpha_y: f32,
+    /// Whether masking and shadowing are independent.
+    separable: bool,
 }
 
 impl Microfacets {
@@ -39,7 +41,14 @@ impl Microfacets {
             distribution,
             alpha_x: alpha_x.max(Self::LEAST_ALPHA),
             alpha_y: alpha_y.max(Self::LEAST_ALPHA),
+            separable: false,
         })
+    }
+
+    /// These facets, masked and shadowed independently as in Mitsuba, or not: then by their heights, as in pbrt-v4.
+    #[must_use]
+    pub fn with_separable_masking(self, separable: bool) -> Self {
+        Self { separable, ..self }
     }
 
     /// [`Microfacets::new`] for GGX.
@@ -54,6 +63,7 @@ impl Microfacets {
             distribution: Distribution::Ggx,
             alpha_x: alpha_x.max(2.0 * Self::SMOOTH),
             alpha_y: alpha_y.max(2.0 * Self::SMOOTH),
+            separable: false,
         }
     }
 
@@ -144,9 +154,12 @@ impl Microfacets {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// Fraction masked neither from `wo` nor from `wi`, with correlated heights.
+    /// Fraction masked neither from `wo` nor from `wi`, with correlated heights or independently.
     #[inline]
     pub fn g(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.separable {
+            return self.g1(wo) * self.g1(wi);
+        }
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 

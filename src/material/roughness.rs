@@ -23,6 +23,8 @@ pub struct TexturedRoughness {
     /// Whether the values are pbrt's roughness, not slopes.
     remap: bool,
     distribution: Distribution,
+    /// See [`Microfacets::with_separable_masking`].
+    separable: bool,
 }
 
 impl Roughness {
@@ -45,6 +47,19 @@ impl Roughness {
                 v,
                 remap,
                 distribution,
+                separable: false,
+            })),
+        }
+    }
+
+    /// See [`Microfacets::with_separable_masking`].
+    #[must_use]
+    pub fn with_separable_masking(self, separable: bool) -> Self {
+        match self {
+            Self::Constant(facets) => Self::Constant(facets.map(|facets| facets.with_separable_masking(separable))),
+            Self::Textured(textures) => Self::Textured(Arc::new(TexturedRoughness {
+                separable,
+                ..(*textures).clone()
             })),
         }
     }
@@ -56,7 +71,8 @@ impl Roughness {
             Self::Constant(facets) => *facets,
             Self::Textured(textures) => {
                 let (u, v) = (textures.u.at(si), textures.v.at(si));
-                microfacets(u, v, textures.remap, textures.distribution)
+                let facets = microfacets(u, v, textures.remap, textures.distribution);
+                facets.map(|facets| facets.with_separable_masking(textures.separable))
             }
         }
     }

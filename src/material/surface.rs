@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe, Measured,
-    MeasuredTables, Microfacets, OrenNayar, Principled, PrincipledParameters, PrincipledTables, Relief, Roughness,
-    ThinDielectric,
+    Body, Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe,
+    Measured, MeasuredTables, Microfacets, OrenNayar, PlasticMaterial, Principled, PrincipledParameters,
+    PrincipledTables, Relief, Roughness, ThinDielectric, TintedMaterial,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -81,6 +81,12 @@ pub enum Material {
     Relief(Arc<Relief>),
     /// By measurements.
     Measured(Arc<MeasuredTables>),
+    /// One material on the side of the shading normal, another on the other; black without one. Neither transmits.
+    Sided(Arc<[Option<Material>; 2]>),
+    /// A specular material of which less light comes.
+    Tinted(Arc<TintedMaterial>),
+    /// A diffuse base under a dielectric boundary, in closed form.
+    Plastic(Arc<PlasticMaterial>),
     /// A fibre.
     Hair(Arc<HairMaterial>),
 }
@@ -129,6 +135,7 @@ pub struct PrincipledMaterial {
     pub sheen_tint: FloatTexture,
     pub clearcoat: FloatTexture,
     pub clearcoat_gloss: FloatTexture,
+    pub as_in_mitsuba: bool,
     pub tables: PrincipledTables,
 }
 
@@ -151,7 +158,15 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> Bsdf<'_> {
         let material = match self {
-            Self::Mix(_) => self.chosen(si),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material,
+                None => {
+                    return Bsdf::new(
+                        Frame::from_normal(si.ns),
+                        Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)),
+                    );
+                }
+            },
             _ => self,
         };
         // The commonest first, and made in its place: a lobe of any kind is some hundred bytes to move.
@@ -186,6 +201,9 @@ impl Material {
             Self::ThinDielectric { .. } => true,
             Self::CoatedDiffuse { coat, .. } | Self::CoatedConductor { coat, .. } => coat.roughness.may_be_smooth(),
             Self::Mix(mix) => mix.materials.iter().any(Self::may_have_delta),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::may_have_delta),
+            Self::Tinted(tinted) => tinted.material.may_have_delta(),
+            Self::Plastic(plastic) => plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.may_have_delta(),
         }
     }
@@ -198,6 +216,8 @@ impl Material {
                 !coat.eta.is_constant_over_wavelengths()
             }
             Self::Mix(mix) => mix.materials.iter().any(Self::disperses),
+            Self::Sided(sides) => sides.iter().flatten().any(Self::disperses),
+            Self::Tinted(tinted) => tinted.material.disperses(),
             Self::Relief(relief) => relief.material.disperses(),
             Self::Diffuse { .. }
             | Self::DiffuseTransmission { .. }
@@ -205,6 +225,7 @@ impl Material {
             | Self::ThinDielectric { .. }
             | Self::Hair(_)
             | Self::Interface
+            | Self::Plastic(_)
             | Self::Principled(_)
             | Self::Measured(_) => false,
         }
@@ -215,6 +236,8 @@ impl Material {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Measured(_) | Self::Hair(_) => true,
             Self::Mix(mix) => mix.materials.iter().all(Self::is_never_specular),
+            Self::Sided(sides) => sides.iter().flatten().all(Self::is_never_specular),
+            Self::Plastic(plastic) => !plastic.tables.is_smooth(),
             Self::Relief(relief) => relief.material.is_never_specular(),
             Self::Conductor { .. }
             | Self::Dielectric { .. }
@@ -222,13 +245,14 @@ impl Material {
             | Self::Interface
             | Self::CoatedDiffuse { .. }
             | Self::CoatedConductor { .. }
+            | Self::Tinted(_)
             | Self::Principled(_) => false,
         }
     }
 
     /// The lobe, and whether it matters which way the tangent points.
     #[inline]
-    fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
+    pub(super) fn lobe(&self, si: &SurfaceInteraction, lambda: &mut Wavelengths) -> (Lobe<'_>, bool) {
         match self {
             Self::Diffuse { reflectance, roughness } => {
                 let albedo = reflectance.reflectance_at(si, lambda);
@@ -298,11 +322,20 @@ impl Material {
                 let lobe = Layered::new(boundary, body, coat.interlayer(si, lambda));
                 (Lobe::Layered(lobe), coat_is_anisotropic || is_anisotropic(facets))
             }
-            Self::Mix(_) => self.chosen(si).lobe(si, lambda),
+            Self::Mix(_) | Self::Sided(_) => match self.chosen(si) {
+                Some(material) => material.lobe(si, lambda),
+                None => (Lobe::Diffuse(Diffuse::new(SampledSpectrum::ZERO)), false),
+            },
+            Self::Tinted(tinted) => tinted.lobe(si, lambda),
+            Self::Plastic(plastic) => (Lobe::Plastic(plastic.at(si, lambda)), false),
             // For those who want no more than the lobe: the normal has been bent before.
             Self::Relief(relief) => relief.material.lobe(si, lambda),
             Self::Principled(material) => {
                 let p = material.at(si, lambda);
+                if material.as_in_mitsuba {
+                    let lobe = Burley::new(p, luminance(p.base, lambda));
+                    return (Lobe::Burley(lobe), p.anisotropic > 0.0);
+                }
                 let lobe = Principled::new(p, &material.tables);
                 (Lobe::Principled(lobe), p.anisotropic > 0.0)
             }
@@ -311,23 +344,37 @@ impl Material {
         }
     }
 
-    /// The material that a mix is at a point, which is no mix.
-    fn chosen(&self, si: &SurfaceInteraction) -> &Self {
+    /// The material that a mix is at a point, or that is on the side that it is seen from: neither of these. `None` is black.
+    fn chosen(&self, si: &SurfaceInteraction) -> Option<&Self> {
         let mut material = self;
         let mut u = unit_f32((hash_u32s(&si.p.to_array().map(f32::to_bits)) >> 32) as u32);
-        while let Self::Mix(mix) = material {
-            let amount = mix.amount.at(si);
-            // What is left of the number is uniform again, for mixes of mixes.
-            if u < amount {
-                material = &mix.materials[1];
-                u /= amount;
-            } else {
-                material = &mix.materials[0];
-                u = (u - amount) / (1.0 - amount);
+        loop {
+            match material {
+                Self::Mix(mix) => {
+                    let amount = mix.amount.at(si);
+                    // What is left of the number is uniform again, for mixes of mixes.
+                    if u < amount {
+                        material = &mix.materials[1];
+                        u /= amount;
+                    } else {
+                        material = &mix.materials[0];
+                        u = (u - amount) / (1.0 - amount);
+                    }
+                }
+                Self::Sided(sides) => material = sides[usize::from(si.wo.dot(si.ns) < 0.0)].as_ref()?,
+                _ => return Some(material),
             }
         }
-        material
     }
+}
+
+/// The luminance of a reflectance; in spectral mode its mean over the wavelengths at hand.
+fn luminance(base: SampledSpectrum, lambda: &Wavelengths) -> f32 {
+    if *lambda != Wavelengths::rgb() {
+        return base.mean();
+    }
+    let [r, g, b, _] = base.0;
+    0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }
 
 fn is_anisotropic(facets: Option<Microfacets>) -> bool {

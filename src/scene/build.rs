@@ -65,7 +65,7 @@ impl Scene {
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
-        let accel = accel::build(options.backend, &world, &options.build)?;
+        let accel = Arc::from(accel::build(options.backend, &world, &options.build)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
         let light_sampler = match desc.integrator.light_sampler {

@@ -93,11 +93,17 @@ impl LightBuilder {
                 let place = place(DAffine3::from_translation(*from));
                 Light::Point(PointLight::new(place, spectrum.scaled(scale(4.0 * PI)?)))
             }
-            LightKind::Spot { from, to, angle, delta } => {
+            LightKind::Spot {
+                from,
+                to,
+                angle,
+                delta,
+                falloff,
+            } => {
                 let [start, end] = [angle - delta, *angle].map(|a| a.to_radians() as f32);
                 let spectrum = spectrum.scaled(scale(SpotLight::geometric_power(start, end))?);
                 let place = place(facing(*from, (*to - *from).normalize()));
-                Light::Spot(SpotLight::new(place, spectrum, start, end))
+                Light::Spot(SpotLight::new(place, spectrum, start, end).with_falloff(*falloff))
             }
             LightKind::Goniometric { image } => {
                 let factors: Vec<f32> = Pixels::of(image)?

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::textures::{SpectrumUse, TextureCompiler};
 use crate::desc::{
-    CoatDesc, ConductorDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, PrincipledDesc,
+    CoatDesc, ConductorDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, PlasticDesc,
+    PrincipledDesc,
 };
 use crate::material::{
-    Coat, ConductorIor, HairColor, HairMaterial, Material, MeasuredTables, MixMaterial, PrincipledMaterial,
-    PrincipledTables, Relief,
+    Coat, ConductorIor, HairColor, HairMaterial, Material, MeasuredTables, MixMaterial, PlasticMaterial, PlasticTables,
+    PrincipledMaterial, PrincipledTables, Relief, Roughness, TintedMaterial,
 };
 
 /// All materials of a scene, by their ids.
@@ -101,6 +102,19 @@ impl MaterialCompiler<'_, '_> {
             MaterialKind::Measured(desc) => {
                 Material::Measured(Arc::new(MeasuredTables::new(desc, self.textures.spectra.mode)))
             }
+            MaterialKind::Sided { front, back } => {
+                Material::Sided(Arc::new([*front, *back].map(|side| side.map(|id| self.material(id)))))
+            }
+            MaterialKind::Tinted {
+                material,
+                reflectance,
+                transmittance,
+            } => Material::Tinted(Arc::new(TintedMaterial {
+                material: self.material(*material),
+                reflectance: self.textures.spectrum(reflectance, SpectrumUse::Albedo),
+                transmittance: self.textures.spectrum(transmittance, SpectrumUse::Albedo),
+            })),
+            MaterialKind::Plastic(desc) => Material::Plastic(Arc::new(plastic(desc, self.textures))),
             MaterialKind::Hair(desc) => Material::Hair(Arc::new(hair(desc, self.textures))),
             MaterialKind::Interface => Material::Interface,
             MaterialKind::Mix { materials, amount } => Material::Mix(Arc::new(MixMaterial {
@@ -130,6 +144,20 @@ fn coating(desc: &CoatDesc, textures: &mut TextureCompiler<'_>) -> Coat {
         g: textures.float(&desc.g),
         max_depth: desc.max_depth,
         samples: desc.samples,
+    }
+}
+
+fn plastic(desc: &PlasticDesc, textures: &mut TextureCompiler<'_>) -> PlasticMaterial {
+    let facets = match textures.roughness(&desc.roughness) {
+        Roughness::Constant(facets) => facets,
+        // The reader sees to it that there is none.
+        Roughness::Textured(_) => None,
+    };
+    PlasticMaterial {
+        diffuse: textures.spectrum(&desc.diffuse_reflectance, SpectrumUse::Albedo),
+        specular: textures.spectrum(&desc.specular_reflectance, SpectrumUse::Albedo),
+        nonlinear: desc.nonlinear,
+        tables: PlasticTables::new(desc.eta, facets),
     }
 }
 
@@ -165,6 +193,7 @@ fn principled(desc: &PrincipledDesc, textures: &mut TextureCompiler<'_>) -> Prin
         sheen_tint: textures.float(&desc.sheen_tint),
         clearcoat: textures.float(&desc.clearcoat),
         clearcoat_gloss: textures.float(&desc.clearcoat_gloss),
+        as_in_mitsuba: desc.as_in_mitsuba,
         tables: PrincipledTables::new(desc.eta),
     }
 }

@@ -40,7 +40,7 @@ pub struct SceneOptions {
 /// Everything that an integrator needs to know of a scene.
 pub struct Scene {
     world: Arc<World>,
-    accel: Box<dyn Accel>,
+    accel: Arc<dyn Accel>,
     color: ColorMode,
     bounds: Bounds3,
     materials: Vec<Material>,
@@ -91,7 +91,7 @@ impl Scene {
 
     /// This scene with the backend wrapped by `wrap`, to listen to its queries.
     #[must_use]
-    pub fn map_accel(mut self, wrap: impl FnOnce(Box<dyn Accel>) -> Box<dyn Accel>) -> Self {
+    pub fn map_accel(mut self, wrap: impl FnOnce(Arc<dyn Accel>) -> Arc<dyn Accel>) -> Self {
         self.accel = wrap(self.accel);
         self
     }

@@ -83,6 +83,7 @@ impl<'a> TextureCompiler<'a> {
             DistributionDesc::Beckmann => Distribution::Beckmann,
         };
         Roughness::new(self.float(&desc.u), self.float(&desc.v), desc.remap, distribution)
+            .with_separable_masking(desc.separable_masking)
     }
 
     fn compile(&self, desc: &SpectrumDesc, usage: SpectrumUse) -> CompiledSpectrum {
@@ -272,6 +273,7 @@ impl<'a> TextureCompiler<'a> {
             WrapDesc::Repeat => Wrap::Repeat,
             WrapDesc::Black => Wrap::Black,
             WrapDesc::Clamp => Wrap::Clamp,
+            WrapDesc::Mirror => Wrap::Mirror,
             WrapDesc::OctahedralSphere => Wrap::OctahedralSphere,
         };
         Some(ImageTexture {
@@ -293,6 +295,7 @@ fn mapping2(desc: &MappingDesc, world_from_texture: &DAffine3) -> Mapping2 {
     let space = || TextureSpace::new(world_from_texture);
     match *desc {
         MappingDesc::Uv { scale, delta } => Mapping2::Uv { scale, delta },
+        MappingDesc::Affine { matrix, delta } => Mapping2::Affine { matrix, delta },
         MappingDesc::Spherical => Mapping2::Spherical(space()),
         MappingDesc::Cylindrical => Mapping2::Cylindrical(space()),
         MappingDesc::Planar { vectors, delta } => Mapping2::Planar {

@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_1_PI, PI};
 
 use super::TextureContext;
-use crate::math::{DAffine3, Vec2, Vec3};
+use crate::math::{DAffine3, Mat2, Vec2, Vec3};
 
 /// Coordinates (s, t), and how they change along the axes of the footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +40,13 @@ pub enum Mapping2 {
     Uv {
         /// Factors.
         scale: Vec2,
+        /// Added after.
+        delta: Vec2,
+    },
+    /// Those of the surface, times `matrix` plus `delta`.
+    Affine {
+        /// Turns and shears.
+        matrix: Mat2,
         /// Added after.
         delta: Vec2,
     },
@@ -85,6 +92,11 @@ impl Mapping2 {
                 st: *scale * context.uv + *delta,
                 dstdx: *scale * context.duvdx,
                 dstdy: *scale * context.duvdy,
+            },
+            Self::Affine { matrix, delta } => Coordinates2 {
+                st: *matrix * context.uv + *delta,
+                dstdx: *matrix * context.duvdx,
+                dstdy: *matrix * context.duvdy,
             },
             Self::Spherical(space) => spherical(&space.map(context)),
             Self::Cylindrical(space) => cylindrical(&space.map(context)),

@@ -18,6 +18,8 @@ pub enum Wrap {
     Black,
     /// The nearest texel of the edge.
     Clamp,
+    /// The image and its mirror image in turn.
+    Mirror,
     /// The image again, flipped as an octahedral map of the sphere continues.
     OctahedralSphere,
 }
@@ -160,6 +162,7 @@ impl MipMap {
             Wrap::Black => return Vec3::ZERO,
             Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
             Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
+            Wrap::Mirror => (mirrored(x, width), mirrored(y, height)),
             Wrap::OctahedralSphere => octahedral([x, y], [width, height]),
         };
         level.texel(x as usize, y as usize)
@@ -240,6 +243,12 @@ impl MipMap {
 
 /// exp(-2): the Gaussian at the ellipse's edge, where the filter is to be 0.
 const GAUSSIAN_END: f32 = 0.135_335_28;
+
+/// The texel that one beyond the edges is a mirror image of.
+fn mirrored(x: i64, size: i64) -> i64 {
+    let x = x.rem_euclid(2 * size);
+    x.min(2 * size - 1 - x)
+}
 
 /// Where the octahedral map continues beyond its edges: flipped about the middle of the edge.
 fn octahedral([x, y]: [i64; 2], [width, height]: [i64; 2]) -> (i64, i64) {

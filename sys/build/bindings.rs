@@ -27,6 +27,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcCommitGeometry",
     "rtcSetGeometryTimeStepCount",
     "rtcSetGeometryMask",
+    "rtcSetGeometryBuildQuality",
     "rtcSetSharedGeometryBuffer",
     "rtcSetNewGeometryBuffer",
     "rtcSetGeometryUserData",

@@ -13,7 +13,7 @@ mod worlds;
 
 use std::sync::Arc;
 
-use lucerna::accel::{Accel, Backend, BuildOptions, HitFilter, RayKind, build, bvh::Bvh};
+use lucerna::accel::{Accel, Backend, BuildOptions, BuildQuality, HitFilter, RayKind, build, bvh::Bvh};
 use lucerna::geometry::{Hit, HitPacket, LANES, Ray, RayQueue, World};
 
 /// Whether the long tier is asked for.
@@ -28,10 +28,39 @@ fn backends(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
         .iter()
         .map(|&backend| (backend.to_string(), build(backend, world, &options).unwrap()))
         .collect();
-    for (name, bvh) in Bvh::build_variants(world, &options) {
-        backends.push((name.into(), Box::new(bvh)));
+    for (name, bvh) in Bvh::build(world, &options).variants() {
+        backends.push((format!("bvh, {name}"), Box::new(bvh)));
     }
     backends
+}
+
+/// The same, and more: builds of every quality, and every call of Embree.
+fn configurations(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
+    let mut all = backends(world);
+    for quality in [BuildQuality::Low, BuildQuality::High] {
+        let options = BuildOptions {
+            quality,
+            ..BuildOptions::default()
+        };
+        for (name, bvh) in Bvh::build(world, &options).variants() {
+            all.push((format!("bvh, {quality:?} quality, {name}"), Box::new(bvh)));
+        }
+        #[cfg(feature = "embree")]
+        {
+            use lucerna::accel::embree::{Calls, EmbreeScene, Entry};
+            let scene = EmbreeScene::build(world, &options).unwrap();
+            for &entry in Entry::AVAILABLE {
+                for coherent in [false, true] {
+                    let calls = Calls { entry, coherent };
+                    all.push((
+                        format!("embree, {quality:?} quality, {calls:?}"),
+                        Box::new(scene.calling(calls)),
+                    ));
+                }
+            }
+        }
+    }
+    all
 }
 
 /// What each ray hits, with the distance.

@@ -1,5 +1,6 @@
 //! The program as scripts see it: exit codes, files, streams.
 
+mod bench;
 mod compare;
 mod info;
 mod list;

@@ -107,3 +107,30 @@ fn quiet_runs_and_pipes_have_no_progress_bar() {
         run.stderr()
     );
 }
+
+#[test]
+fn a_profile_says_where_the_time_went() {
+    let sandbox = Sandbox::new();
+    let profile = ["--profile", "--stats", "s.json", "--threads", "2"];
+    let run = sandbox.lucerna(&[&["render", "ball.pbrt", "-o", "b.exr"], &profile[..]].concat());
+    run.expect(0);
+    let s: Value = serde_json::from_slice(&std::fs::read(sandbox.path("s.json")).unwrap()).unwrap();
+    let stages = s["profile"]["thread_seconds"].as_array().unwrap();
+    let share: f64 = stages.iter().map(|stage| stage["share"].as_f64().unwrap()).sum();
+    assert!((share - 1.0).abs() < 1e-6, "{share}");
+    let rays: u64 = stages.iter().map(|stage| stage["rays"].as_u64().unwrap()).sum();
+    assert_eq!(Some(rays), s["rays"].as_u64());
+    let fastest = s["profile"]["fastest"].as_array().unwrap();
+    let kinds: Vec<_> = fastest
+        .iter()
+        .map(|fastest| fastest["kind"].as_str().unwrap())
+        .collect();
+    assert_eq!(kinds, ["camera", "bounce", "shadow"]);
+    assert!(fastest.iter().all(|fastest| fastest["mrays"].as_f64().unwrap() > 0.0));
+    // Without it, nothing is said.
+    sandbox
+        .lucerna(&["render", "ball.pbrt", "-o", "c.exr", "--stats", "t.json"])
+        .expect(0);
+    let t: Value = serde_json::from_slice(&std::fs::read(sandbox.path("t.json")).unwrap()).unwrap();
+    assert!(t.get("profile").is_none());
+}

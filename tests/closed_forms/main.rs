@@ -16,6 +16,7 @@ mod layers;
 mod lights;
 mod media;
 mod motion;
+mod occlusion;
 mod shapes;
 mod wavelengths;
 

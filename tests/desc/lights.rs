@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lucerna::desc::{ColorSpace, LightKind, SceneDesc, color_space_of, load};
+use lucerna::desc::{ColorSpace, LightKind, SceneDesc, SpotFalloff, color_space_of, load};
 use lucerna::error::Error;
 use lucerna::image_io::{Image, ImageMetadata, PendingOutput, Window};
 
@@ -56,10 +56,28 @@ fn spotlights_have_the_parameters_of_pbrt() {
     let scene = scene.unwrap_or_else(|e| panic!("{e}"));
     let (from, to) = (DVec3::ZERO, DVec3::Z);
     let (angle, delta) = (30.0, 5.0);
-    assert_eq!(scene.lights[0].kind, LightKind::Spot { from, to, angle, delta });
+    assert_eq!(
+        scene.lights[0].kind,
+        LightKind::Spot {
+            from,
+            to,
+            angle,
+            delta,
+            falloff: SpotFalloff::Smooth
+        }
+    );
     let (from, to) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0));
     let (angle, delta) = (60.0, 60.0);
-    assert_eq!(scene.lights[1].kind, LightKind::Spot { from, to, angle, delta });
+    assert_eq!(
+        scene.lights[1].kind,
+        LightKind::Spot {
+            from,
+            to,
+            angle,
+            delta,
+            falloff: SpotFalloff::Smooth
+        }
+    );
     assert_eq!(scene.lights[1].photometric, Some(7.0));
 }
 

@@ -1,4 +1,4 @@
-//! Scene descriptions: what pbrt files and PLY meshes become, what is said about bad ones, and that no bytes make the reader panic.
+//! Scene descriptions: what pbrt and Mitsuba files and meshes become, what is said about bad ones, and that no bytes make a reader panic.
 
 mod bad_input;
 mod bare;
@@ -7,6 +7,7 @@ mod lenses;
 mod lights;
 mod materials;
 mod media;
+mod mitsuba;
 mod mutations;
 mod obj;
 mod options;
@@ -22,8 +23,14 @@ use std::path::{Path, PathBuf};
 use lucerna::desc::{ParseOptions, SceneDesc, pbrt};
 use lucerna::error::{Diagnostic, Error, Severity};
 
-const STRICT: ParseOptions = ParseOptions { lenient: false };
-const LENIENT: ParseOptions = ParseOptions { lenient: true };
+const STRICT: ParseOptions = ParseOptions {
+    lenient: false,
+    defines: Vec::new(),
+};
+const LENIENT: ParseOptions = ParseOptions {
+    lenient: true,
+    defines: Vec::new(),
+};
 
 fn read(text: &str, options: &ParseOptions) -> Result<SceneDesc, Vec<Diagnostic>> {
     pbrt::parse_str(text.as_bytes(), Path::new("scene.pbrt"), options).map_err(|e| match e {

@@ -5,7 +5,7 @@ use std::path::Path;
 use lucerna::desc::{ParseOptions, obj, pbrt, ply};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
+pub(super) struct Random(pub u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -15,7 +15,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize
     }
 }
@@ -49,7 +49,7 @@ const PIECES: [&[u8]; 24] = [
 ];
 
 /// One to four changes from byte `start` on: bytes changed, removed, doubled, pieces put in, the end cut off.
-fn mutate(original: &[u8], start: usize, random: &mut Random) -> Vec<u8> {
+pub(super) fn mutate(original: &[u8], start: usize, random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..1 + random.below(4) {
         let at = (start + random.below(bytes.len().saturating_sub(start))).min(bytes.len().saturating_sub(1));
@@ -114,6 +114,7 @@ fn no_text_makes_the_reader_panic() {
         let text = mutate(SCENES[round % SCENES.len()].as_bytes(), 0, &mut random);
         let options = ParseOptions {
             lenient: round % 2 == 0,
+            ..ParseOptions::default()
         };
         // What is reported must be fit to be shown, too.
         match pbrt::parse_str(&text, Path::new("no/such/directory/scene.pbrt"), &options) {

@@ -140,6 +140,7 @@ fn materials_have_the_parameters_of_pbrt() {
         v: Textured::Value(v),
         remap,
         distribution: DistributionDesc::Ggx,
+        separable_masking: false,
     };
     assert_eq!(
         ior(2),

@@ -73,3 +73,21 @@ fn every_scene_is_the_same_again() {
         check(&path.display().to_string(), &desc);
     }
 }
+
+/// What no scene of ours has.
+#[test]
+fn rarer_things_are_the_same_again() {
+    for text in [
+        "Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 2 WorldBegin",
+        "Integrator \"ambientocclusion\" WorldBegin",
+        "Film \"gbuffer\" \"string coordinatesystem\" \"world\" Camera \"spherical\" WorldBegin",
+        "Film \"spectral\" \"float lambdamin\" 400.5 \"integer nbuckets\" 7 Camera \"perspective\" WorldBegin",
+        "WorldBegin Material \"hair\" \"rgb sigma_a\" [3 2 1] \"float beta_n\" .4 Shape \"sphere\"",
+        "WorldBegin Material \"hair\" \"float pheomelanin\" .4 Shape \"sphere\"",
+        "WorldBegin Material \"hair\" \"rgb color\" [.3 .2 .1] \"float alpha\" 3 \"float eta\" 1.4 Shape \"sphere\"",
+        "Camera \"perspective\" \"float shutterclose\" .5 Film \"image\" \"float scale\" 3 WorldBegin Material \"plastic\"
+            Shape \"sphere\" LightSource \"infinite\" \"blackbody L\" [4000 2]",
+    ] {
+        check(text, &crate::scene(text));
+    }
+}

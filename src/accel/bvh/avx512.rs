@@ -9,8 +9,8 @@ use super::Scene;
 use super::avx2::Avx2;
 use super::lanes::{BlockPlanes, Lanes};
 use super::leaf::Corners;
-use super::stream;
-use crate::accel::{HitFilter, RayKind};
+use super::stream::{self, Plan};
+use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, RayPacket};
 
 /// Proof that the processor has AVX-512 (F, VL, DQ and BW), AVX2 and fused multiply-add.
@@ -31,19 +31,19 @@ impl Avx512 {
     pub fn intersect(
         self,
         scene: &Scene,
-        kind: RayKind,
+        plan: Plan,
         rays: &[RayPacket],
         hits: &mut [HitPacket],
         filter: Option<&dyn HitFilter>,
     ) {
         // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
-        unsafe { intersect(self, scene, kind, rays, hits, filter) }
+        unsafe { intersect(self, scene, plan, rays, hits, filter) }
     }
 
     /// Occlusion, by packets.
-    pub fn occluded(self, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    pub fn occluded(self, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
-        unsafe { occluded(self, scene, rays, filter) }
+        unsafe { occluded(self, scene, plan, rays, filter) }
     }
 }
 
@@ -51,17 +51,17 @@ impl Avx512 {
 fn intersect(
     s: Avx512,
     scene: &Scene,
-    kind: RayKind,
+    plan: Plan,
     rays: &[RayPacket],
     hits: &mut [HitPacket],
     filter: Option<&dyn HitFilter>,
 ) {
-    stream::intersect(s, s.0, scene, kind, rays, hits, filter);
+    stream::intersect(s, s.0, scene, plan, rays, hits, filter);
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
-fn occluded(s: Avx512, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
-    stream::occluded(s, s.0, scene, rays, filter);
+fn occluded(s: Avx512, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    stream::occluded(s, s.0, scene, plan, rays, filter);
 }
 
 /// Calls intrinsics that need AVX-512.

@@ -1,42 +1,24 @@
 //! A binary tree by the binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies"), in parallel. The tree is a function of the items alone: minima, maxima and counts do not depend on the order
-//! in which threads take them.
+//! Hierarchies"), with spatial splits where they are asked for, in parallel. The tree is a function of the items alone: minima, maxima and
+//! counts do not depend on the order in which threads take them, and how many fragments a subtree may add is decided above it.
 
 use std::ops::Range;
 
 use super::bins::{self, Split};
+use super::item::{Extent, Item};
 use super::leaf::LANES;
-use crate::math::{Bounds3, Vec3};
-
-/// Something to be put into a tree.
-#[derive(Clone, Copy, Debug)]
-pub struct Item {
-    /// A box around it.
-    pub bounds: Bounds3,
-    /// What it is, to the caller.
-    pub index: u32,
-}
-
-impl Item {
-    /// The middle of its box; zero along axes where that is infinite.
-    #[inline]
-    pub fn center(&self) -> Vec3 {
-        let c = self.bounds.min * 0.5 + self.bounds.max * 0.5;
-        if c.is_finite() {
-            c
-        } else {
-            Vec3::select(c.abs().cmplt(Vec3::INFINITY), c, Vec3::ZERO)
-        }
-    }
-}
+use super::spatial::{self, Corners, Plane};
+use crate::math::Bounds3;
 
 /// How to build.
-#[derive(Clone, Copy, Debug)]
-pub struct BuildParams {
+#[derive(Clone, Copy)]
+pub struct BuildParams<'a> {
     /// Bins along an axis, at most [`bins::MOST`].
     pub bins: usize,
     /// Items of lesser index are triangles and may share a leaf, as many as a block holds; others have one to themselves.
     pub triangles: u32,
+    /// The corners of triangles, for spatial splits; `None` for none.
+    pub corners: Option<&'a dyn Corners>,
 }
 
 /// A binary tree.
@@ -62,76 +44,180 @@ pub enum Content {
 pub const MOST_LEVELS: u32 = 64;
 
 /// Below this many items a task is not worth its overhead.
-const LEAST_PARALLEL: usize = 4096;
+pub const LEAST_PARALLEL: usize = 4096;
 
-/// Builds a tree over `items`, of which there is at least one.
-pub fn build(items: &mut [Item], params: &BuildParams) -> Binary {
-    build_range(items, 0, 0, params)
-}
+/// Fragments that spatial splits may add, as a part of all triangles.
+const MOST_FRAGMENTS: f64 = 0.3;
 
-fn build_range(items: &mut [Item], first: usize, level: u32, params: &BuildParams) -> Binary {
-    let (bounds, centers) = bins::bounds_of(items);
-    if is_leaf(items, params) {
-        return Binary {
-            bounds,
-            content: Content::Leaf(first..first + items.len()),
-        };
+/// Builds a tree over `items`, of which there is at least one; they may become more, with gaps between those of different leaves.
+pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> Binary {
+    let extent = bins::extent_of(items);
+    let count = items.len();
+    if params.corners.is_some() {
+        let room = (f64::from(params.triangles) * MOST_FRAGMENTS) as usize;
+        items.resize(count + room, items[0]);
     }
-    let middle = divide(items, &centers, level, params);
-    let (left, right) = items.split_at_mut(middle);
-    let parallel = left.len() + right.len() > LEAST_PARALLEL;
-    let mut build_left = || build_range(left, first, level + 1, params);
-    let mut build_right = || build_range(right, first + middle, level + 1, params);
-    let (left, right) = if parallel {
-        rayon::join(build_left, build_right)
-    } else {
-        (build_left(), build_right())
+    let builder = Builder {
+        params,
+        least_overlap: extent.bounds.half_area() * spatial::LEAST_OVERLAP,
     };
-    Binary {
-        bounds,
-        content: Content::Inner(Box::new([left, right])),
-    }
+    builder.range(items, Place { first: 0, level: 0 }, count, extent)
 }
 
-fn is_leaf(items: &[Item], params: &BuildParams) -> bool {
-    items.len() <= 1 || (items.len() <= LANES && items.iter().all(|item| item.index < params.triangles))
+struct Builder<'a> {
+    params: &'a BuildParams<'a>,
+    least_overlap: f64,
 }
 
-/// Reorders items into two sets that are not empty and returns the size of the first.
-fn divide(items: &mut [Item], centers: &Bounds3, level: u32, params: &BuildParams) -> usize {
-    let halving_levels = usize::BITS - items.len().leading_zeros();
-    if level + halving_levels < MOST_LEVELS
-        && let Some(split) = bins::best_split(items, centers, params.bins)
-    {
-        let middle = partition(items, &split);
-        if middle > 0 && middle < items.len() {
-            return middle;
+/// Where a range of items is among all, and how deep in the tree.
+#[derive(Clone, Copy)]
+struct Place {
+    first: usize,
+    level: u32,
+}
+
+/// Items divided: those of the lower side are first in the range, those of the other at its end, and both have room behind them.
+struct Divided {
+    /// How many, by side.
+    counts: [usize; 2],
+    extents: [Extent; 2],
+    /// Where the part of the other side begins.
+    middle: usize,
+}
+
+impl Builder<'_> {
+    /// A tree over the first `count` items of a range; the rest of it is room for fragments.
+    fn range(&self, items: &mut [Item], place: Place, count: usize, extent: Extent) -> Binary {
+        let bounds = extent.bounds.bounds();
+        if is_leaf(&items[..count], self.params.triangles) {
+            return Binary {
+                bounds,
+                content: Content::Leaf(place.first..place.first + count),
+            };
+        }
+        let Divided {
+            counts,
+            extents,
+            middle,
+        } = self.divide(items, place.level, count, &extent);
+        let (left, right) = items.split_at_mut(middle);
+        let at = |first| Place {
+            first,
+            level: place.level + 1,
+        };
+        let mut build_left = || self.range(left, at(place.first), counts[0], extents[0]);
+        let mut build_right = || self.range(right, at(place.first + middle), counts[1], extents[1]);
+        let (left, right) = if count > LEAST_PARALLEL {
+            rayon::join(build_left, build_right)
+        } else {
+            (build_left(), build_right())
+        };
+        Binary {
+            bounds,
+            content: Content::Inner(Box::new([left, right])),
         }
     }
-    halve(items, centers)
+
+    /// Reorders items into two sets that are not empty.
+    fn divide(&self, items: &mut [Item], level: u32, count: usize, extent: &Extent) -> Divided {
+        let halving_levels = usize::BITS - items.len().leading_zeros();
+        if level + halving_levels < MOST_LEVELS {
+            let split = bins::best_split(&items[..count], extent, self.params.bins);
+            if let Some(divided) = self.divide_by_plane(items, count, extent, split.as_ref()) {
+                return divided;
+            }
+            if let Some(split) = split {
+                let (middle, extents) = partition(&mut items[..count], &split);
+                if middle > 0 && middle < count {
+                    return with_room(items, [middle, count - middle], extents);
+                }
+            }
+        }
+        let middle = halve(&mut items[..count], extent);
+        let extents = [&items[..middle], &items[middle..count]].map(bins::extent_of);
+        with_room(items, [middle, count - middle], extents)
+    }
+
+    /// A spatial split, if one is worth it.
+    fn divide_by_plane(
+        &self,
+        items: &mut [Item],
+        count: usize,
+        extent: &Extent,
+        split: Option<&Split>,
+    ) -> Option<Divided> {
+        let corners = self.params.corners?;
+        let room = items.len() - count;
+        let least_overlap = self.least_overlap.max(extent.bounds.half_area() * spatial::LEAST_SHARE);
+        if room == 0 || count <= LANES || split.is_some_and(|split| split.overlap <= least_overlap) {
+            return None;
+        }
+        let plane: Plane = spatial::best_plane(&items[..count], extent, corners)?;
+        if plane.both == 0 || split.is_some_and(|split| split.cost <= plane.cost) {
+            return None;
+        }
+        let sides = spatial::divide(&items[..count], &plane, corners, room);
+        let counts = [sides[0].len(), sides[1].len()];
+        if counts.contains(&0) || counts.contains(&count) {
+            return None;
+        }
+        let middle = middle_of(items.len(), counts);
+        items[..counts[0]].copy_from_slice(&sides[0]);
+        items[middle..middle + counts[1]].copy_from_slice(&sides[1]);
+        Some(Divided {
+            counts,
+            extents: [&sides[0], &sides[1]].map(|side| bins::extent_of(side)),
+            middle,
+        })
+    }
 }
 
-/// Moves the items of the split's lower side to the front and returns how many they are.
-fn partition(items: &mut [Item], split: &Split) -> usize {
+/// Where the second part of a range begins that has so many items: room is shared by number.
+fn middle_of(length: usize, [left, right]: [usize; 2]) -> usize {
+    let room = (length - left - right) as u128;
+    left + (room * left as u128 / (left + right) as u128) as usize
+}
+
+/// Items that are in order, one side behind the other, with room behind both.
+fn with_room(items: &mut [Item], counts: [usize; 2], extents: [Extent; 2]) -> Divided {
+    let middle = middle_of(items.len(), counts);
+    items.copy_within(counts[0]..counts[0] + counts[1], middle);
+    Divided {
+        counts,
+        extents,
+        middle,
+    }
+}
+
+/// Whether items may share a leaf.
+pub fn is_leaf(items: &[Item], triangles: u32) -> bool {
+    items.len() <= 1 || (items.len() <= LANES && items.iter().all(|item| item.index() < triangles))
+}
+
+/// Moves the items of the split's lower side to the front and returns how many they are, with the extents of both sides.
+fn partition(items: &mut [Item], split: &Split) -> (usize, [Extent; 2]) {
     let (mut low, mut high) = (0, items.len());
+    let mut extents = [Extent::EMPTY; 2];
     while low < high {
         if split.is_below(&items[low]) {
+            extents[0] = extents[0].with(&items[low]);
             low += 1;
         } else {
+            extents[1] = extents[1].with(&items[low]);
             high -= 1;
             items.swap(low, high);
         }
     }
-    low
+    (low, extents)
 }
 
 /// Divides by number, along the axis of greatest extent.
-fn halve(items: &mut [Item], centers: &Bounds3) -> usize {
-    let axis = centers.extent().max_position();
+fn halve(items: &mut [Item], extent: &Extent) -> usize {
+    let axis = extent.spread().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
         let by_center = a.center()[axis].total_cmp(&b.center()[axis]);
-        by_center.then(a.index.cmp(&b.index))
+        by_center.then(a.index().cmp(&b.index()))
     });
     middle
 }
@@ -139,6 +225,7 @@ fn halve(items: &mut [Item], centers: &Bounds3) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vec3;
 
     fn levels(tree: &Binary) -> u32 {
         match &tree.content {
@@ -159,6 +246,7 @@ mod tests {
         let params = BuildParams {
             bins: 16,
             triangles: u32::MAX,
+            corners: None,
         };
         let tree = build(&mut items, &params);
         assert!(levels(&tree) <= MOST_LEVELS, "{} levels", levels(&tree));
@@ -171,17 +259,14 @@ mod tests {
             next = range.end;
         }
         assert_eq!(next, count);
-        let mut seen: Vec<u32> = items.iter().map(|item| item.index).collect();
+        let mut seen: Vec<u32> = items.iter().map(Item::index).collect();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(i, &index)| i as u32 == index));
         tree
     }
 
     fn item(index: usize, min: Vec3, max: Vec3) -> Item {
-        Item {
-            bounds: Bounds3 { min, max },
-            index: index as u32,
-        }
+        Item::new(&Bounds3 { min, max }, index as u32)
     }
 
     #[test]

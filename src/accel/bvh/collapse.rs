@@ -1,7 +1,7 @@
 //! From a binary tree to one of eight children a node.
 
-use super::bins::half_area;
 use super::build::{Binary, Content};
+use super::item::half_area;
 use super::node::{Child, ChildRef, Node, WIDTH};
 
 /// Makes the nodes of `tree`, the root first. `leaf` makes a leaf of the items in a range and returns it with its box.

@@ -51,34 +51,36 @@ struct Slot<'a> {
     ray: LocalRay,
     query: Query<'a>,
     current: ChildRef,
-    stack: Stack,
 }
 
 impl<'a> Slot<'a> {
+    #[inline(always)]
     fn new((place, ray, query): (usize, LocalRay, Query<'a>)) -> Self {
-        let mut slot = Self {
+        Self {
             place,
             ray,
             query,
             current: ChildRef::ROOT,
-            stack: Stack {
-                distance: [0; STACK + WIDTH],
-                child: [0; STACK + WIDTH],
-                depth: 2,
-            },
-        };
-        slot.stack.child[0] = END;
-        slot
+        }
+    }
+}
+
+impl Stack {
+    /// With nothing on it, for stacks that are kept from call to call: clearing them takes longer than few rays.
+    pub fn empty() -> Self {
+        Self {
+            distance: [0; STACK + WIDTH],
+            child: [0; STACK + WIDTH],
+            depth: 0,
+        }
     }
 
+    /// Puts the root on it, whatever there was before.
     #[inline(always)]
-    fn restart(&mut self, (place, ray, query): (usize, LocalRay, Query<'a>)) {
-        self.place = place;
-        self.ray = ray;
-        self.query = query;
-        self.stack.depth = 2;
-        self.stack.child[1] = 0;
-        self.stack.distance[1] = 0;
+    fn begin(&mut self) {
+        (self.child[0], self.child[1]) = (END, ChildRef::ROOT.0);
+        self.distance[1] = 0;
+        self.depth = 2;
     }
 }
 
@@ -93,6 +95,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
     mut rays: impl Source<'a>,
     mut done: impl FnMut(usize, &Query<'a>),
     single_stack: &mut [u64],
+    stacks: &mut Vec<Stack>,
 ) {
     let mut slots = Vec::with_capacity(SLOTS);
     while slots.len() < SLOTS
@@ -100,6 +103,11 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
     {
         slots.push(Slot::new(next));
     }
+    if stacks.len() < slots.len() {
+        stacks.resize_with(slots.len(), Stack::empty);
+    }
+    let stacks = &mut stacks[..slots.len()];
+    stacks.iter_mut().for_each(Stack::begin);
     // Of what is no node and no block, the root is fetched: an address at which there is nothing takes long to find out.
     let root = tree.nodes.as_ptr() as usize;
     let bases = [root, tree.blocks.as_ptr() as usize, root, root];
@@ -111,11 +119,11 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
         while rest != 0 {
             let i = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            let slot = &mut slots[i];
-            let depth = slot.stack.depth - 1;
-            slot.stack.depth = depth;
-            let child = slot.stack.child[depth];
-            let near = ANY || f32::from_bits(slot.stack.distance[depth]) <= slot.query.cull;
+            let (slot, stack) = (&mut slots[i], &mut stacks[i]);
+            let depth = stack.depth - 1;
+            stack.depth = depth;
+            let child = stack.child[depth];
+            let near = ANY || f32::from_bits(stack.distance[depth]) <= slot.query.cull;
             slot.current = ChildRef(child);
             let tag = child >> 30;
             let kind = if near { tag.min(2) } else { POP };
@@ -133,7 +141,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
             let slot = &mut slots[i];
             let node = &tree.nodes[slot.current.0 as usize];
             walk.kernel
-                .spread::<ANY>(node, &slot.ray.slab, slot.query.tnear, slot.query.cull, &mut slot.stack);
+                .spread::<ANY>(node, &slot.ray.slab, slot.query.tnear, slot.query.cull, &mut stacks[i]);
         }
         let mut rest = next[1];
         pop |= rest;
@@ -143,7 +151,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
             let slot = &mut slots[i];
             let block = &tree.blocks[(slot.current.0 & ((1 << 30) - 1)) as usize];
             if walk.block::<_, ANY>(block, block.fixed_corners(), &slot.ray, &mut slot.query) && ANY {
-                slot.stack.depth = 1;
+                stacks[i].depth = 1;
             }
         }
         let mut rest = next[2];
@@ -154,7 +162,8 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
             if slot.current.0 == END {
                 done(slot.place, &slot.query);
                 if let Some(next) = rays.next() {
-                    slot.restart(next);
+                    *slot = Slot::new(next);
+                    stacks[i].begin();
                     pop |= 1 << i;
                 }
                 continue;
@@ -165,7 +174,7 @@ pub fn trace<'a, K: Interleaved, const ANY: bool>(
                 .fixed::<ANY>(walk, tree, slot.current, ray, query, single_stack)
                 && ANY
             {
-                slot.stack.depth = 1;
+                stacks[i].depth = 1;
             }
             pop |= 1 << i;
         }

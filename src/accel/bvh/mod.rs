@@ -1,5 +1,6 @@
-//! Our own BVH, pure Rust: a binned SAH build (`build`, `bins`) collapsed to eight children a node (`collapse`), and one
-//! traversal (`traverse`) over a kernel of vector instructions that is chosen at run time (`kernel`, `avx2`).
+//! Our own BVH, pure Rust: binary trees by a binned SAH (`build`, `bins`), with spatial splits (`spatial`), or in little time by clustering
+//! (`ploc`), collapsed to eight children a node (`collapse`); and one traversal (`traverse`) over a kernel of vector instructions that is
+//! chosen at run time (`tracing`, `kernel`, `avx2`).
 //!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
 //! triangle would be hit. All kernels, and all ways through a tree, give the same bits.
@@ -12,15 +13,22 @@ mod bins;
 mod build;
 mod collapse;
 mod interleave;
+mod item;
 mod kernel;
 mod lanes;
 mod leaf;
 mod node;
+mod order;
 mod packet;
+mod ploc;
 mod prepare;
 pub(super) mod query;
 pub(super) mod ray;
+mod spatial;
 mod stream;
+#[cfg(test)]
+mod tests;
+mod tracing;
 mod traverse;
 mod tree;
 pub(super) mod triangle;
@@ -29,12 +37,13 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use self::kernel::{Kernel, Portable};
+use self::kernel::Kernel;
 use self::query::{Asked, Query};
 use self::ray::{LocalRay, direction_scale};
+use self::tracing::Tracing;
 use self::traverse::{Level, STACK};
 use self::tree::GroupTrees;
-use super::{Accel, AccelInfo, Backend, BuildOptions, BuildQuality, HitFilter, RayKind};
+use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
 use crate::geometry::{GroupId, HitPacket, LANES, Opacity, RayPacket, World};
 
 /// A world and the trees over it.
@@ -46,23 +55,6 @@ struct Scene {
     groups: Vec<GroupTrees>,
     /// Of each geometry, whether hits on it are filtered.
     filtered: Vec<bool>,
-    limits: Limits,
-}
-
-/// Nodes of the tree of the top level above which rays that were sorted do not go through it together.
-#[derive(Clone, Copy)]
-struct Limits {
-    bounces: usize,
-    /// Shadow rays have their ends in common.
-    shadows: usize,
-}
-
-impl Limits {
-    /// As measured.
-    const USUAL: Self = Self {
-        bounces: 200,
-        shadows: 1500,
-    };
 }
 
 /// An 8-wide BVH over a world: one tree over what is in world space and over the instances, one for each group.
@@ -72,42 +64,20 @@ impl Limits {
 /// with `tfar`: a ray that starts in the plane of a triangle does not meet it. The answer for a ray does not
 /// depend on the other rays of a call, nor on the instructions of the processor.
 pub struct Bvh {
-    scene: Scene,
-    instructions: Instructions,
-}
-
-/// Which kernel traces.
-#[derive(Clone, Copy)]
-enum Instructions {
-    #[cfg(target_arch = "x86_64")]
-    Avx512(avx512::Avx512, avx2::Avx2),
-    #[cfg(target_arch = "x86_64")]
-    Avx2(avx2::Avx2),
-    Portable(Portable),
+    scene: Arc<Scene>,
+    tracing: Tracing,
 }
 
 impl Bvh {
     /// Builds it, in the rayon pool of the caller. The tree does not depend on the number of threads.
     ///
-    /// The quality is the number of bins of the surface area heuristic along each axis: 8, 16 or 32. [`BuildOptions::robust`]
-    /// makes no difference.
+    /// Of low quality it is built by clustering, of medium quality by the surface area heuristic with 16 bins along each axis, of high
+    /// quality with 32 bins and spatial splits. [`BuildOptions::robust`] makes no difference.
     pub fn build(world: &Arc<World>, options: &BuildOptions) -> Self {
-        Self {
-            instructions: Instructions::detect(),
-            ..Self::build_portable(world, options)
-        }
-    }
-
-    /// The same, traced without instructions that not every processor has. The answers are the same; for tests.
-    pub fn build_portable(world: &Arc<World>, options: &BuildOptions) -> Self {
-        let bins = match options.quality {
-            BuildQuality::Low => 8,
-            BuildQuality::Medium => 16,
-            BuildQuality::High => 32,
-        };
+        let quality = options.quality;
         let groups = world.groups().par_iter();
         let groups: Vec<_> = groups
-            .map(|members| GroupTrees::build(world, members, &[], bins))
+            .map(|members| GroupTrees::build(world, members, &[], quality))
             .collect();
         let boxes: Vec<_> = (0..world.groups().len())
             .into_par_iter()
@@ -119,8 +89,8 @@ impl Bvh {
             .map(|instance| instance.world_from_object.moving_bounds(&boxes[instance.group.index()]))
             .collect();
         Self {
-            scene: Scene {
-                top: GroupTrees::build(world, world.root(), &instances, bins),
+            scene: Arc::new(Scene {
+                top: GroupTrees::build(world, world.root(), &instances, quality),
                 groups,
                 filtered: world
                     .geometries()
@@ -128,47 +98,24 @@ impl Bvh {
                     .map(|g| g.opacity == Opacity::Filtered)
                     .collect(),
                 world: Arc::clone(world),
-                limits: Limits::USUAL,
-            },
-            instructions: Instructions::Portable(Portable),
+            }),
+            tracing: Tracing::detect(),
         }
     }
 
-    /// One for every way to trace that this processor has, with its name. All give the same answers; for tests.
-    pub fn build_variants(world: &Arc<World>, options: &BuildOptions) -> Vec<(&'static str, Self)> {
-        let mut variants = vec![("portable bvh", Self::build_portable(world, options))];
-        let mut add = |name, instructions, most| {
-            let mut bvh = Self::build_portable(world, options);
-            bvh.instructions = instructions;
-            bvh.scene.limits = Limits {
-                bounces: most,
-                shadows: most,
-            };
-            variants.push((name, bvh));
+    /// The same trees, traced in each way that this processor has, by name: instructions, then how rays go through the trees. All give
+    /// the same answers; for tests and measurements.
+    pub fn variants(&self) -> Vec<(String, Self)> {
+        let variant = |(name, tracing)| {
+            let scene = Arc::clone(&self.scene);
+            (name, Self { scene, tracing })
         };
-        #[cfg(target_arch = "x86_64")]
-        if let Some(kernel) = avx2::Avx2::detect() {
-            add("avx2 bvh, together", Instructions::Avx2(kernel), usize::MAX);
-            add("avx2 bvh, in turn", Instructions::Avx2(kernel), 0);
-            if let Some(wide) = avx512::Avx512::detect() {
-                add("avx-512 bvh, together", Instructions::Avx512(wide, kernel), usize::MAX);
-                add("avx-512 bvh, in turn", Instructions::Avx512(wide, kernel), 0);
-            }
-        }
-        variants
+        Tracing::all().into_iter().map(variant).collect()
     }
-}
 
-impl Instructions {
-    fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(kernel) = avx2::Avx2::detect() {
-            return match avx512::Avx512::detect() {
-                Some(wide) => Self::Avx512(wide, kernel),
-                None => Self::Avx2(kernel),
-            };
-        }
-        Self::Portable(Portable)
+    /// The names of [`Bvh::variants`].
+    pub fn variant_names() -> Vec<String> {
+        Tracing::all().into_iter().map(|(name, _)| name).collect()
     }
 }
 
@@ -240,33 +187,11 @@ impl Scene {
 impl Accel for Bvh {
     fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a hit packet for each ray packet");
-        match self.instructions {
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512(wide, _) if self.scene.takes_packets() => {
-                wide.intersect(&self.scene, kind, rays, hits, filter);
-            }
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) if self.scene.takes_packets() => {
-                kernel.intersect(&self.scene, kind, rays, hits, filter);
-            }
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => {
-                self.scene.intersect(kernel, rays, hits, filter);
-            }
-            Instructions::Portable(kernel) => self.scene.intersect(kernel, rays, hits, filter),
-        }
+        self.tracing.intersect(&self.scene, kind, rays, hits, filter);
     }
 
     fn occluded(&self, _kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
-        match self.instructions {
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512(wide, _) if self.scene.takes_packets() => wide.occluded(&self.scene, rays, filter),
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(kernel) if self.scene.takes_packets() => kernel.occluded(&self.scene, rays, filter),
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512(_, kernel) | Instructions::Avx2(kernel) => self.scene.occluded(kernel, rays, filter),
-            Instructions::Portable(kernel) => self.scene.occluded(kernel, rays, filter),
-        }
+        self.tracing.occluded(&self.scene, rays, filter);
     }
 
     fn is_mate_independent(&self, _kind: RayKind) -> bool {

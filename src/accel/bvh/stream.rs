@@ -3,15 +3,15 @@
 use super::Scene;
 use super::interleave::{self, Interleaved};
 use super::lanes::Lanes;
+use super::order::{BATCH, Place, Room, sort};
 use super::packet::Packet;
 use super::prepare::{Prepared, Rays};
 use super::query::{Asked, Query};
 use super::ray::{LocalRay, direction_scale};
 use super::traverse::{Level, STACK, Walk};
 use super::tree::FixedTree;
-use crate::accel::{HitFilter, RayKind};
+use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, LANES, RayPacket};
-use crate::math::Bounds3;
 
 impl Scene {
     /// Whether packets can be traced: all that moves is in instances.
@@ -20,17 +20,16 @@ impl Scene {
     }
 }
 
-/// Classes of rays, by the signs of the direction and the axis of its greatest component.
-const CLASSES: usize = 24;
-
-/// Cells of the box of the tree along each axis, in bits.
-const CELL_BITS: u32 = 2;
-
-/// Cells in all.
-const CELLS: usize = 1 << (3 * CELL_BITS);
-
-/// Rays that are sorted at a time.
-const BATCH: usize = 4096;
+/// How the rays of a call are put together.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
+    pub as_they_come: bool,
+    /// Nodes of the tree above which sorted rays go through it one by one.
+    pub most_nodes: usize,
+    /// Packets of a call of which the rays do so whatever the tree: few have little in common. Not for occlusion.
+    pub few_packets: usize,
+}
 
 fn active(packet: &RayPacket) -> u32 {
     (0..LANES).fold(0, |bits, lane| bits | u32::from(packet.is_active(lane)) << lane)
@@ -57,53 +56,6 @@ fn neighbours<const N: usize>(packets: &[RayPacket]) -> (Rays<N>, u32) {
         lanes |= active(packet) << (i * LANES);
     }
     (rays, lanes)
-}
-
-/// Where a ray of a call is: packet * LANES + lane.
-type Place = u16;
-
-/// The class of a direction.
-#[inline(always)]
-fn class([x, y, z]: [f32; 3]) -> usize {
-    let sign = |x: f32| x.to_bits() >> 31;
-    let size = [x.abs(), y.abs(), z.abs()];
-    let is_x = (size[0] > size[1]) & (size[0] > size[2]);
-    let axis = if is_x { 0 } else { 1 + u32::from(size[2] >= size[1]) };
-    (axis << 3 | sign(z) << 2 | sign(y) << 1 | sign(x)) as usize
-}
-
-/// Puts rays in the order of their classes, and within a class of the cells that they start in; those that take no part are left out.
-/// Returns how many there are.
-fn sort(packets: &[RayPacket], bounds: &Bounds3, places: &mut [Place; BATCH]) -> usize {
-    let mut classes = [0u16; BATCH];
-    let mut counts = [0u16; CLASSES * CELLS + 1];
-    let low = bounds.min;
-    let scale = ((1 << CELL_BITS) as f32 / bounds.extent()).to_array();
-    let cell = |x: f32, axis: usize| ((x - low[axis]) * scale[axis]).clamp(0.0, ((1 << CELL_BITS) - 1) as f32) as u32;
-    // Spreads the bits of a cell number two apart.
-    let spread = |x: u32| (x & 1) | (x & 2) << 2;
-    for (packet, classes) in packets.iter().zip(classes.chunks_exact_mut(LANES)) {
-        for (lane, to) in classes.iter_mut().enumerate() {
-            let class = class([packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]]);
-            let at = [packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]];
-            let at = [0, 1, 2].map(|axis| spread(cell(at[axis], axis)) << axis);
-            let class = class * CELLS + (at[0] | at[1] | at[2]) as usize;
-            *to = if packet.is_active(lane) { class } else { CLASSES * CELLS } as u16;
-        }
-        for &class in &*classes {
-            counts[class as usize] += 1;
-        }
-    }
-    let mut first = 0;
-    for count in &mut counts {
-        first += std::mem::replace(count, first);
-    }
-    for (place, &class) in classes[..packets.len() * LANES].iter().enumerate() {
-        let next = &mut counts[class as usize];
-        places[*next as usize] = place as Place;
-        *next += 1;
-    }
-    counts[CLASSES * CELLS - 1] as usize
 }
 
 /// The rays at the given places, at most N.
@@ -177,7 +129,7 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
         &self,
         packets: &[RayPacket],
         places: &[Place],
-        stack: &mut [u64; STACK],
+        (stack, stacks): (&mut [u64; STACK], &mut Vec<interleave::Stack>),
         done: impl FnMut(usize, &Query<'a>),
     ) {
         let walk = Walk {
@@ -192,7 +144,7 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
             prepared: None,
             next: 0,
         };
-        interleave::trace::<K, ANY>(&walk, self.tree, feed, done, stack);
+        interleave::trace::<K, ANY>(&walk, self.tree, feed, done, stack, stacks);
     }
 
     /// Traces one ray.
@@ -250,37 +202,66 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     s: S,
     kernel: K,
     scene: &Scene,
-    kind: RayKind,
+    plan: Plan,
     packets: &[RayPacket],
     hits: &mut [HitPacket],
     filter: Option<&dyn HitFilter>,
 ) {
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, filter);
-    let mut stack = [0; STACK];
-    if kind == RayKind::Camera {
-        for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
-            let (rays, lanes) = neighbours(given);
-            let (packet, rest) = call.trace::<false>(rays, lanes, &mut stack);
-            for (i, hits) in hits.iter_mut().enumerate() {
-                let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
-                *hits = HitPacket {
-                    geometry: at(&packet.ids[0]),
-                    primitive: at(&packet.ids[1]),
-                    instance: at(&packet.ids[2]),
-                    t: std::array::from_fn(|lane| packet.prepared.rays.tfar[i * LANES + lane]),
-                };
-            }
-            for lane in lanes_of(rest) {
-                let (at, lane) = (lane / LANES, lane % LANES);
-                if let Some(query) = call.alone::<false>(&given[at], lane, &mut stack) {
-                    query.store(&mut hits[at], lane);
-                }
+    let mut room = Room::take();
+    if plan.as_they_come {
+        as_they_come(&call, packets, hits, &mut room.stack);
+    } else {
+        sorted(&call, plan, packets, hits, &mut room);
+    }
+    room.put();
+}
+
+/// Nearest hits of rays that go together as they come.
+#[inline(always)]
+fn as_they_come<S: Lanes<N>, K: Interleaved, const N: usize>(
+    call: &Call<'_, S, K, N>,
+    packets: &[RayPacket],
+    hits: &mut [HitPacket],
+    stack: &mut [u64; STACK],
+) {
+    for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
+        let (rays, lanes) = neighbours(given);
+        let (packet, rest) = call.trace::<false>(rays, lanes, stack);
+        for (i, hits) in hits.iter_mut().enumerate() {
+            let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
+            *hits = HitPacket {
+                geometry: at(&packet.ids[0]),
+                primitive: at(&packet.ids[1]),
+                instance: at(&packet.ids[2]),
+                t: std::array::from_fn(|lane| packet.prepared.rays.tfar[i * LANES + lane]),
+            };
+        }
+        for lane in lanes_of(rest) {
+            let (at, lane) = (lane / LANES, lane % LANES);
+            if let Some(query) = call.alone::<false>(&given[at], lane, stack) {
+                query.store(&mut hits[at], lane);
             }
         }
-        return;
     }
-    let mut places = [0; BATCH];
+}
+
+/// Nearest hits of rays that are sorted.
+#[inline(always)]
+fn sorted<S: Lanes<N>, K: Interleaved, const N: usize>(
+    call: &Call<'_, S, K, N>,
+    plan: Plan,
+    packets: &[RayPacket],
+    hits: &mut [HitPacket],
+    room: &mut Room,
+) {
+    let Room {
+        stack,
+        stacks,
+        classes,
+        places,
+    } = room;
     for (packets, hits) in packets.chunks(BATCH / LANES).zip(hits.chunks_mut(BATCH / LANES)) {
         for (packet, hits) in packets.iter().zip(&mut *hits) {
             *hits = HitPacket {
@@ -288,20 +269,20 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
                 ..HitPacket::EMPTY
             };
         }
-        let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > scene.limits.bounces {
-            call.one_by_one::<false>(packets, &places[..count], &mut stack, |place, query| {
+        let count = sort(packets, &call.tree.bounds, classes, places);
+        if call.tree.nodes.len() > plan.most_nodes || packets.len() <= plan.few_packets {
+            call.one_by_one::<false>(packets, &places[..count], (stack, stacks), |place, query| {
                 query.store(&mut hits[place / LANES], place % LANES);
             });
             continue;
         }
         for places in places[..count].chunks(N) {
             let lanes = (1 << places.len()) - 1;
-            let (packet, rest) = call.trace::<false>(gather(packets, places), lanes, &mut stack);
+            let (packet, rest) = call.trace::<false>(gather(packets, places), lanes, stack);
             for (lane, &place) in places.iter().enumerate() {
                 let (at, to) = (place as usize / LANES, place as usize % LANES);
                 if rest >> lane & 1 == 1 {
-                    if let Some(query) = call.alone::<false>(&packets[at], to, &mut stack) {
+                    if let Some(query) = call.alone::<false>(&packets[at], to, stack) {
                         query.store(&mut hits[at], to);
                     }
                     continue;
@@ -321,20 +302,31 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
     s: S,
     kernel: K,
     scene: &Scene,
+    plan: Plan,
     packets: &mut [RayPacket],
     filter: Option<&dyn HitFilter>,
 ) {
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, filter);
-    let mut stack = [0; STACK];
-    let mut places = [0; BATCH];
+    let mut room = Room::take();
+    let Room {
+        stack,
+        stacks,
+        classes,
+        places,
+    } = &mut *room;
     for packets in packets.chunks_mut(BATCH / LANES) {
-        let count = sort(packets, &tree.bounds, &mut places);
-        if tree.nodes.len() > scene.limits.shadows {
+        let count = sort(packets, &tree.bounds, classes, places);
+        if tree.nodes.len() > plan.most_nodes {
             let mut found = [0u8; BATCH / LANES];
-            call.one_by_one::<true>(packets, &places[..count], &mut stack, |place, query| {
-                found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);
-            });
+            call.one_by_one::<true>(
+                packets,
+                &places[..count],
+                (&mut *stack, &mut *stacks),
+                |place, query| {
+                    found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);
+                },
+            );
             for (packet, &found) in packets.iter_mut().zip(&found) {
                 lanes_of(found.into()).for_each(|lane| packet.tfar[lane] = f32::NEG_INFINITY);
             }
@@ -342,11 +334,11 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
         }
         for places in places[..count].chunks(N) {
             let lanes = (1 << places.len()) - 1;
-            let (packet, rest) = call.trace::<true>(gather(packets, places), lanes, &mut stack);
+            let (packet, rest) = call.trace::<true>(gather(packets, places), lanes, stack);
             let mut found = packet.hits(s) & lanes;
             for lane in lanes_of(rest) {
                 let place = places[lane] as usize;
-                if let Some(query) = call.alone::<true>(&packets[place / LANES], place % LANES, &mut stack) {
+                if let Some(query) = call.alone::<true>(&packets[place / LANES], place % LANES, stack) {
                     found |= u32::from(query.is_hit()) << lane;
                 }
             }
@@ -356,4 +348,5 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
             }
         }
     }
+    room.put();
 }

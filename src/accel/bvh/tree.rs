@@ -2,12 +2,17 @@
 
 use rayon::prelude::*;
 
-use super::build::{self, BuildParams, Item};
+use super::build::{self, BuildParams};
 use super::collapse::collapse;
+use super::item::Item;
 use super::leaf::{Block, FixedBlock, MovingBlock};
 use super::node::{Child, ChildRef, FixedNode, MovingNode, Node};
+use super::ploc;
+use super::ray::MARGIN;
+use super::spatial::Corners;
+use crate::accel::BuildQuality;
 use crate::geometry::{GeometryId, PrimitiveId, Shape, TriangleMesh, World};
-use crate::math::Bounds3;
+use crate::math::{Bounds3, Vec3};
 
 /// A tree of 8-wide nodes; the root is the first.
 pub struct Tree<N, B> {
@@ -59,10 +64,10 @@ pub fn mesh(world: &World, id: GeometryId) -> Option<&TriangleMesh> {
 
 impl GroupTrees {
     /// Builds the trees over geometries and, at the top level, instances, whose boxes are given.
-    pub fn build(world: &World, members: &[GeometryId], instances: &[Bounds3], bins: usize) -> Self {
+    pub fn build(world: &World, members: &[GeometryId], instances: &[Bounds3], quality: BuildQuality) -> Self {
         Self {
-            fixed: fixed_tree(world, members, instances, bins),
-            moving: moving_trees(world, members, bins),
+            fixed: fixed_tree(world, members, instances, quality),
+            moving: moving_trees(world, members, quality),
         }
     }
 
@@ -73,8 +78,45 @@ impl GroupTrees {
     }
 }
 
-fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins: usize) -> Option<FixedTree> {
-    let mut triangles = Vec::new();
+/// The corners of the triangles of a tree.
+struct Triangles<'a> {
+    world: &'a World,
+    names: &'a [(GeometryId, PrimitiveId)],
+}
+
+impl Corners for Triangles<'_> {
+    fn corners(&self, index: u32) -> Option<[Vec3; 3]> {
+        let &(geometry, primitive) = self.names.get(index as usize)?;
+        mesh(self.world, geometry).map(|mesh| mesh.triangle(primitive.index(), 0.0))
+    }
+}
+
+impl Triangles<'_> {
+    /// A box around what is of a triangle in the box of a fragment, for rays: the triangle test moves a triangle by a part of its own
+    /// coordinates, which nodes know of whole triangles only.
+    fn fragment_bounds(&self, fragment: &Bounds3, index: u32) -> Bounds3 {
+        let Some(whole) = self.corners(index).map(Bounds3::from_points) else {
+            return *fragment;
+        };
+        if *fragment == whole {
+            return whole;
+        }
+        let size = whole.min.abs().max(whole.max.abs());
+        let margin = 2.0 * MARGIN * (size + Vec3::splat(size.max_element()));
+        Bounds3 {
+            min: (fragment.min - margin).max(whole.min),
+            max: (fragment.max + margin).min(whole.max),
+        }
+    }
+}
+
+fn fixed_tree(
+    world: &World,
+    members: &[GeometryId],
+    instances: &[Bounds3],
+    quality: BuildQuality,
+) -> Option<FixedTree> {
+    let mut names = Vec::new();
     let mut analytic = Vec::new();
     let mut boxes = Vec::new();
     for &id in members {
@@ -83,7 +125,7 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
         {
             let bounds = (0..mesh.triangle_count()).into_par_iter();
             boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
-            triangles.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
+            names.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
         }
     }
     for &id in members {
@@ -95,35 +137,49 @@ fn fixed_tree(world: &World, members: &[GeometryId], instances: &[Bounds3], bins
         }
     }
     boxes.extend_from_slice(instances);
-    let first_instance = triangles.len() + analytic.len();
-    let (tree, items) = binary(boxes, triangles.len(), bins)?;
+    let first_instance = names.len() + analytic.len();
+    let triangles = Triangles { world, names: &names };
+    let (tree, items) = binary(boxes, names.len(), quality, Some(&triangles))?;
 
-    let mut blocks = Vec::new();
+    let mut leaves = Vec::new();
     let nodes = collapse(&tree, &mut |range| {
-        let items = &items[range];
-        let bounds = items.iter().fold(Bounds3::EMPTY, |b, item| b.union(item.bounds));
-        let first = items[0].index as usize;
-        let child = if first < triangles.len() {
-            let members: Vec<_> = items.iter().map(|item| triangles[item.index as usize]).collect();
-            blocks.push(FixedBlock::new(world, &members, 0));
-            Child::Block(blocks.len() - 1)
-        } else if first < first_instance {
-            Child::Analytic(first - triangles.len())
-        } else {
-            Child::Instance(first - first_instance)
-        };
-        (ChildRef::new(child), bounds)
+        let items = &items[range.clone()];
+        let first = items[0].index() as usize;
+        if first >= names.len() {
+            let child = if first < first_instance {
+                Child::Analytic(first - names.len())
+            } else {
+                Child::Instance(first - first_instance)
+            };
+            return (ChildRef::new(child), items[0].box4().bounds());
+        }
+        let bounds = items
+            .iter()
+            .map(|item| triangles.fragment_bounds(&item.box4().bounds(), item.index()))
+            .fold(Bounds3::EMPTY, Bounds3::union);
+        leaves.push(range);
+        (ChildRef::new(Child::Block(leaves.len() - 1)), bounds)
     });
+    let block = |range: &std::ops::Range<usize>| {
+        // Fragments of one triangle may share a leaf.
+        let mut members: Vec<_> = items[range.clone()]
+            .iter()
+            .map(|item| names[item.index() as usize])
+            .collect();
+        members.sort_unstable_by_key(|(geometry, primitive)| (geometry.0, primitive.0));
+        members.dedup();
+        FixedBlock::new(world, &members, 0)
+    };
     Some(Tree {
         bounds: tree.bounds,
         nodes,
-        blocks,
+        blocks: leaves.par_iter().with_min_len(256).map(block).collect(),
         analytic,
     })
 }
 
 /// One set of trees for each number of time steps.
-fn moving_trees(world: &World, members: &[GeometryId], bins: usize) -> Vec<MovingTrees> {
+fn moving_trees(world: &World, members: &[GeometryId], quality: BuildQuality) -> Vec<MovingTrees> {
     let mut steps: Vec<usize> = members
         .iter()
         .filter_map(|&id| mesh(world, id))
@@ -135,67 +191,102 @@ fn moving_trees(world: &World, members: &[GeometryId], bins: usize) -> Vec<Movin
     let of_steps = |steps: usize| {
         let has_steps = |id: &GeometryId| mesh(world, *id).is_some_and(|mesh| mesh.time_steps() == steps);
         let meshes: Vec<GeometryId> = members.iter().copied().filter(has_steps).collect();
-        let segments = (0..steps - 1).into_par_iter();
         Some(MovingTrees {
             sample: *meshes.first()?,
-            segments: segments
-                .filter_map(|segment| moving_tree(world, &meshes, segment, bins))
-                .collect(),
+            segments: segment_trees(world, &meshes, steps - 1, quality),
         })
     };
     steps.into_iter().filter_map(of_steps).collect()
 }
 
-fn moving_tree(world: &World, meshes: &[GeometryId], segment: usize, bins: usize) -> Option<MovingTree> {
-    let mut triangles = Vec::new();
-    let mut ends = Vec::new();
+/// A tree for each segment of time. Those of high quality are built one by one; of others the shape is that of the first, refitted
+/// to where the triangles are in each.
+fn segment_trees(world: &World, meshes: &[GeometryId], segments: usize, quality: BuildQuality) -> Vec<MovingTree> {
+    let mut names = Vec::new();
     for &id in meshes {
-        let Some(mesh) = mesh(world, id) else { continue };
-        for i in 0..mesh.triangle_count() {
-            triangles.push((id, PrimitiveId::from_index(i)));
-            ends.push([mesh.triangle_bounds(i, segment), mesh.triangle_bounds(i, segment + 1)]);
-        }
+        let count = mesh(world, id).map_or(0, TriangleMesh::triangle_count);
+        names.extend((0..count).map(|i| (id, PrimitiveId::from_index(i))));
     }
-    // The shape of the tree is that for the middle of the segment.
-    let middle = |[a, b]: &[Bounds3; 2]| Bounds3 {
-        min: a.min * 0.5 + b.min * 0.5,
-        max: a.max * 0.5 + b.max * 0.5,
+    let shape = |segment: usize| {
+        let middle = |name: &(GeometryId, PrimitiveId)| {
+            let [a, b] = ends(world, *name, segment);
+            Bounds3 {
+                min: a.min * 0.5 + b.min * 0.5,
+                max: a.max * 0.5 + b.max * 0.5,
+            }
+        };
+        binary(names.iter().map(middle).collect(), names.len(), quality, None)
     };
-    let (tree, items) = binary(ends.iter().map(middle).collect(), triangles.len(), bins)?;
+    let shared = if quality == BuildQuality::High { None } else { shape(0) };
+    let tree = |segment: usize| {
+        let own = if shared.is_some() { None } else { shape(segment) };
+        let (tree, items) = shared.as_ref().or(own.as_ref())?;
+        Some(moving_tree(world, &names, segment, tree, items))
+    };
+    (0..segments).into_par_iter().filter_map(tree).collect()
+}
+
+/// The boxes of a triangle at both ends of a segment.
+fn ends(world: &World, (id, primitive): (GeometryId, PrimitiveId), segment: usize) -> [Bounds3; 2] {
+    let at = |step: usize| mesh(world, id).map_or(Bounds3::EMPTY, |mesh| mesh.triangle_bounds(primitive.index(), step));
+    [at(segment), at(segment + 1)]
+}
+
+/// A tree of the shape of `tree` over the triangles as they are in a segment.
+fn moving_tree(
+    world: &World,
+    names: &[(GeometryId, PrimitiveId)],
+    segment: usize,
+    tree: &build::Binary,
+    items: &[Item],
+) -> MovingTree {
     let mut blocks = Vec::new();
-    let nodes = collapse(&tree, &mut |range| {
-        let items = items[range].iter().map(|item| item.index as usize);
-        let members: Vec<_> = items.clone().map(|i| triangles[i]).collect();
+    let nodes = collapse(tree, &mut |range| {
+        let members: Vec<_> = items[range].iter().map(|item| names[item.index() as usize]).collect();
         blocks.push(MovingBlock::new(world, &members, segment));
-        let bounds = items.map(|i| ends[i]).fold([Bounds3::EMPTY; 2], MovingNode::union);
+        let bounds = members.iter().map(|&name| ends(world, name, segment));
+        let bounds = bounds.fold([Bounds3::EMPTY; 2], MovingNode::union);
         (ChildRef::new(Child::Block(blocks.len() - 1)), bounds)
     });
-    Some(Tree {
+    Tree {
         bounds: tree.bounds,
         nodes,
         blocks,
         analytic: Vec::new(),
-    })
+    }
 }
 
-/// A binary tree over boxes, the first `triangles` of which are those of triangles; with the items in the order of its leaves.
-fn binary(boxes: Vec<Bounds3>, triangles: usize, bins: usize) -> Option<(build::Binary, Vec<Item>)> {
+/// A binary tree over boxes, the first `triangles` of which are those of triangles; with the items, where its leaves say.
+fn binary(
+    boxes: Vec<Bounds3>,
+    triangles: usize,
+    quality: BuildQuality,
+    corners: Option<&Triangles<'_>>,
+) -> Option<(build::Binary, Vec<Item>)> {
     // Indices are below 2^32: each box is of a primitive or an instance, whose own numbers are; a sum that is not is more than
     // memory holds.
     let mut items: Vec<Item> = boxes
         .into_par_iter()
         .enumerate()
-        .map(|(index, bounds)| Item {
-            bounds,
-            index: PrimitiveId::from_index(index).0,
-        })
+        .map(|(index, bounds)| Item::new(&bounds, PrimitiveId::from_index(index).0))
         .collect();
     if items.is_empty() {
         return None;
     }
+    let triangles = triangles as u32;
+    if quality == BuildQuality::Low
+        && let Some(tree) = ploc::build(&mut items, triangles)
+    {
+        return Some((tree, items));
+    }
+    let (bins, corners) = match quality {
+        BuildQuality::Low | BuildQuality::Medium => (16, None),
+        BuildQuality::High => (32, corners.map(|corners| corners as &dyn Corners)),
+    };
     let params = BuildParams {
         bins,
-        triangles: triangles as u32,
+        triangles,
+        corners,
     };
     let tree = build::build(&mut items, &params);
     Some((tree, items))

@@ -45,10 +45,13 @@ mod scene;
 mod shuffle_tests;
 #[cfg(test)]
 mod tests;
+mod widths;
 
 use std::sync::Arc;
 
 use embree_sys as ffi;
+
+pub use self::widths::Entry;
 
 use self::device::Device;
 use self::query::Query;
@@ -59,11 +62,27 @@ use crate::geometry::{GeometryId, HitPacket, InstanceId, LANES, RayPacket, World
 
 /// A world in Embree's trees.
 pub struct EmbreeScene {
+    built: Arc<Built>,
+    /// `None` to choose by the kind of ray.
+    calls: Option<Calls>,
+}
+
+/// What one build makes, for any way to trace through it.
+struct Built {
     scenes: Scenes,
     world: Arc<World>,
     /// Whether each geometry at the root has its id for its place there.
     root_is_in_order: bool,
     device: Arc<Device>,
+}
+
+/// How to trace, whatever the rays are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Calls {
+    /// By which call.
+    pub entry: Entry,
+    /// Whether Embree is told that rays that are traced together are neighbours, on which only speed depends.
+    pub coherent: bool,
 }
 
 impl EmbreeScene {
@@ -77,27 +96,50 @@ impl EmbreeScene {
         device.check()?;
         let in_order = |(place, id): (usize, &GeometryId)| place == id.index();
         Ok(Self {
-            scenes,
-            world: Arc::clone(world),
-            root_is_in_order: world.root().iter().enumerate().all(in_order),
-            device,
+            built: Arc::new(Built {
+                scenes,
+                world: Arc::clone(world),
+                root_is_in_order: world.root().iter().enumerate().all(in_order),
+                device,
+            }),
+            calls: None,
         })
+    }
+
+    /// The same trees, traced by these calls whatever rays are for. For measuring.
+    #[must_use]
+    pub fn calling(&self, calls: Calls) -> Self {
+        Self {
+            built: Arc::clone(&self.built),
+            calls: Some(calls),
+        }
     }
 
     /// The committed scene, for benchmarks that call Embree directly. It lives as long as `self`.
     pub fn raw_scene(&self) -> ffi::RTCScene {
-        self.scenes.root.raw()
+        self.built.scenes.root.raw()
     }
 
-    fn query<'a>(&'a self, kind: RayKind, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
-        Query {
-            scene: &self.scenes.root,
-            filter,
-            first_instance: self.scenes.first_instance,
+    /// The calls for rays of a kind.
+    fn calls(&self, kind: RayKind, any: bool) -> Calls {
+        let streams = any && kind != RayKind::Camera && ffi::EMBREE_HAS_STREAMS == 1;
+        self.calls.unwrap_or(Calls {
+            entry: if streams { Entry::Stream } else { Entry::Packet8 },
             coherent: kind == RayKind::Camera,
+        })
+    }
+
+    fn query<'a>(&'a self, calls: Calls, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
+        Query {
+            scene: &self.built.scenes.root,
+            filter,
+            first_instance: self.built.scenes.first_instance,
+            coherent: calls.coherent,
         }
     }
+}
 
+impl Built {
     /// Makes Embree's ids of geometries and instances those of the world: a geometry is known by its place among the members of
     /// its group, instances are numbered after the geometries at the root.
     #[inline]
@@ -125,30 +167,27 @@ impl EmbreeScene {
 impl Accel for EmbreeScene {
     fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a packet of hits for each packet of rays");
-        self.query(kind, filter)
-            .intersect8(rays, hits, |hits| self.resolve(hits));
+        let calls = self.calls(kind, false);
+        self.query(calls, filter)
+            .intersect_by(calls.entry, rays, hits, |hits| self.built.resolve(hits));
     }
 
     fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
-        let query = self.query(kind, filter);
-        if kind != RayKind::Camera && ffi::EMBREE_HAS_STREAMS == 1 {
-            query.occluded_stream(rays);
-        } else {
-            query.occluded8(rays);
-        }
+        let calls = self.calls(kind, true);
+        self.query(calls, filter).occluded_by(calls.entry, rays);
     }
 
     /// Coherent packets share one traversal: seen are some ten answers in a thousand that change with the mates, of rays aimed at
     /// vertices and edges. Incoherent packets and streams answer each ray by itself: none seen in 10^5.
     fn is_mate_independent(&self, kind: RayKind) -> bool {
-        kind != RayKind::Camera
+        !self.calls(kind, kind == RayKind::Shadow).coherent
     }
 
     fn info(&self) -> AccelInfo {
         AccelInfo {
             backend: Backend::Embree,
-            version: self.device.version(),
-            memory: self.device.memory(),
+            version: self.built.device.version(),
+            memory: self.built.device.memory(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The calls that trace rays.
+//! The calls that trace rays: those of the layer, by packets of 8 and by streams of single rays. Others are in `widths`.
 
 use std::ffi::{c_int, c_uint, c_void};
 use std::mem::{MaybeUninit, align_of, offset_of, size_of};
@@ -28,7 +28,7 @@ assert_same_layout! { org_x org_y org_z tnear dir_x dir_y dir_z time tfar mask i
 const _: () = assert!(ffi::EMBREE_INVALID_ID == HitPacket::NONE);
 
 /// Packets that go into one call of a stream: their rays, as Embree wants them there, fit the first level cache.
-const STREAM_PACKETS: usize = 32;
+pub(super) const STREAM_PACKETS: usize = 32;
 
 /// Which lanes take part, as Embree wants it: -1 or 0.
 #[repr(C, align(32))]
@@ -132,7 +132,7 @@ impl Query<'_> {
     }
 
     /// Makes a query for `calls`, and goes on with the panic of a callback once Embree has returned.
-    fn run(&self, calls: impl FnOnce(*mut ffi::EmbreeQuery)) {
+    pub(super) fn run(&self, calls: impl FnOnce(*mut ffi::EmbreeQuery)) {
         let data = QueryData::new(self.filter, self.first_instance);
         let user = (&raw const data).cast_mut().cast::<c_void>();
         let mut query = MaybeUninit::uninit();
@@ -148,7 +148,7 @@ impl Query<'_> {
 /// An `RTCRay`: (origin, tnear), (direction, time), (tfar, mask, id, flags), the last three as bits.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(transparent)]
-struct SingleRay([Vec4; 3]);
+pub(super) struct SingleRay(pub [Vec4; 3]);
 
 const _: () = {
     assert!(size_of::<SingleRay>() == size_of::<ffi::RTCRay>());
@@ -161,7 +161,7 @@ const _: () = {
 
 /// The rays of a packet: six transpositions of 4 x 4 numbers.
 #[inline]
-fn single_rays(packet: &RayPacket) -> [SingleRay; LANES] {
+pub(super) fn single_rays(packet: &RayPacket) -> [SingleRay; LANES] {
     let bits = |row: &[u32; LANES]| row.map(f32::from_bits);
     let thirds = [
         [packet.org_x, packet.org_y, packet.org_z, packet.tnear],

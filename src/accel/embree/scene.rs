@@ -136,7 +136,7 @@ pub fn build(world: &Arc<World>, device: &Arc<Device>, options: &BuildOptions) -
         .collect();
     let mut geometries = Vec::with_capacity(data.len());
     for data in &data {
-        geometries.push(geometry(device, data)?);
+        geometries.push(geometry(device, data, options.quality)?);
     }
 
     let mut groups = Vec::with_capacity(world.groups().len());
@@ -180,7 +180,7 @@ fn attach_all(scene: &SceneHandle, members: &[GeometryId], geometries: &[Option<
 }
 
 /// A committed geometry; `None` where it has no primitive.
-fn geometry(device: &Arc<Device>, data: &GeometryData) -> Result<Option<GeometryHandle>> {
+fn geometry(device: &Arc<Device>, data: &GeometryData, quality: BuildQuality) -> Result<Option<GeometryHandle>> {
     let geometry = data.world.geometry(data.id);
     if geometry.primitive_count() == 0 {
         return Ok(None);
@@ -189,6 +189,11 @@ fn geometry(device: &Arc<Device>, data: &GeometryData) -> Result<Option<Geometry
         Shape::Mesh(mesh) => triangles(device, geometry, mesh)?,
         _ => analytic(device, geometry)?,
     };
+    if quality == BuildQuality::Low {
+        // In a scene of low quality each geometry has a tree of its own, of medium quality if nobody says.
+        // SAFETY: the geometry is live.
+        unsafe { ffi::rtcSetGeometryBuildQuality(handle.handle, ffi::RTC_BUILD_QUALITY_LOW) };
+    }
     let user = (&raw const *data).cast_mut().cast::<c_void>();
     // SAFETY: the geometry is live; `data` outlives the scenes that hold it (see `Scenes`), and is only read.
     unsafe {

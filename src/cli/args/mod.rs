@@ -1,5 +1,6 @@
 //! The arguments as typed. Nothing here opens a file or knows a default that a scene could override.
 
+mod bench;
 mod render;
 mod values;
 
@@ -7,11 +8,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+pub use bench::BenchArgs;
 pub use render::RenderArgs;
 pub use values::ListKind;
 
 use crate::accel::Backend;
-use values::parse_backend;
+use values::{parse_backend, parse_define};
 
 /// What `--version` says: the program, and the Embree that it was built with.
 const VERSION: &str = concat!(
@@ -21,7 +23,7 @@ const VERSION: &str = concat!(
     ")"
 );
 
-/// A physically based renderer: pbrt-v4 scenes in, EXR or PNG pictures out.
+/// A physically based renderer: pbrt-v4 and Mitsuba 3 scenes in, EXR or PNG pictures out.
 ///
 /// Rays are traced in packets through Embree, or through Lucerna's own BVH. A picture depends on the scene, the options and the
 /// seed, and not on the number of threads: the same command gives the same bits.
@@ -50,6 +52,8 @@ pub enum Command {
     Convert(ConvertArgs),
     /// List what scene files may use, with every parameter: type, range, unit, default
     List(ListArgs),
+    /// Measure intersection backends on the rays of renders
+    Bench(Box<BenchArgs>),
 }
 
 /// Tell what is in a scene.
@@ -62,6 +66,10 @@ pub struct InfoArgs {
     /// What answers ray queries: `embree` or `bvh`
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
+
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
 
     /// Take unknown and unsupported parameters as warnings where something can stand in for them
     #[arg(long)]
@@ -88,6 +96,10 @@ pub struct ConvertArgs {
     /// The file to write
     #[arg(value_name = "OUT.pbrt")]
     pub output: PathBuf,
+
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
 
     /// Take unknown and unsupported parameters as warnings where something can stand in for them
     #[arg(long)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::values::{
     ColorArg, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop,
-    parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
+    parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
 };
 use crate::accel::Backend;
 use crate::film::PixelRect;
@@ -23,9 +23,10 @@ Examples:
   lucerna render cornell-box.pbrt -o cornell-box.png --spp 256
   lucerna render frame-*.pbrt -o 'out/{scene}.exr' --quiet
   lucerna render hall.pbrt -o 'hall-{camera}.exr' --json --stats hall.json
+  lucerna render box.xml -o box.exr -D spp=256 -D max_depth=8
   lucerna render hall.pbrt -o corner.exr --resolution 1920x1080 --crop 0,0,200,100")]
 pub struct RenderArgs {
-    /// Scene files (.pbrt), or meshes (.ply, .obj), which are put on a neutral stage; each may be compressed (.gz)
+    /// Scene files (.pbrt; .xml of Mitsuba), or meshes (.ply, .obj), which are put on a neutral stage; each may be compressed (.gz)
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
 
@@ -140,6 +141,10 @@ pub struct RenderArgs {
     #[arg(long)]
     pub not_robust: bool,
 
+    /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
+    pub defines: Vec<(String, String)>,
+
     /// Take unknown and unsupported parameters of a scene as warnings where something can stand in for them
     #[arg(long)]
     pub lenient: bool,
@@ -147,6 +152,13 @@ pub struct RenderArgs {
     /// Write statistics to this file: a JSON object, or an array if there are several renders
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+
+    /// Say where the time went, and how much of it the fastest backend would need for the same rays
+    ///
+    /// By kind of ray, shading, sampling and film; printed, and put into the statistics. Some of the rays are recorded in a short second render
+    /// and traced by every way that each backend has.
+    #[arg(long)]
+    pub profile: bool,
 
     /// Write events to stdout, a JSON object a line
     ///

@@ -159,6 +159,44 @@ impl From<QualityArg> for BuildQuality {
     }
 }
 
+/// `--threads` of `lucerna bench`: distinct numbers, in the order given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Threads(pub Vec<usize>);
+
+/// The greatest number of threads.
+const MOST_THREADS: usize = 4096;
+
+pub(super) fn parse_threads(text: &str) -> Result<Threads, String> {
+    let expected = || format!("expected numbers of threads, 1 to {MOST_THREADS}, as in 4, 1..8 or 1,2,4");
+    let number = |text: &str| {
+        text.trim()
+            .parse()
+            .ok()
+            .filter(|n| (1..=MOST_THREADS).contains(n))
+            .ok_or_else(expected)
+    };
+    let mut all = Vec::new();
+    for part in text.split(',') {
+        let (first, last) = part.split_once("..").unwrap_or((part, part));
+        all.extend(number(first)?..=number(last.trim_start_matches('='))?);
+    }
+    let mut seen = std::collections::HashSet::new();
+    all.retain(|n| seen.insert(*n));
+    if all.is_empty() {
+        Err(expected())
+    } else {
+        Ok(Threads(all))
+    }
+}
+
+/// `NAME=VALUE`.
+pub(super) fn parse_define(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}
+
 pub(super) fn parse_backend(text: &str) -> Result<Backend, String> {
     text.parse().map_err(|error: crate::Error| error.to_string())
 }
@@ -234,6 +272,14 @@ pub(super) fn parse_pixel(text: &str) -> Result<PixelRect, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn threads_are_numbers_and_ranges() {
+        assert_eq!(parse_threads("1..4,2,8"), Ok(Threads(vec![1, 2, 3, 4, 8])));
+        for bad in ["", "0", "4..1", "1..", "x", "1..99999999999"] {
+            assert!(parse_threads(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn sizes_and_crops_are_checked() {

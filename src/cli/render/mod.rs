@@ -2,6 +2,7 @@
 
 mod picture;
 mod prepare;
+mod profile;
 mod strategies;
 
 use std::collections::HashSet;

@@ -91,8 +91,14 @@ impl Job<'_> {
             outputs.write(&film, &view, &metadata, self.args.exposure)?;
         }
         report_dropped(&reporter, &stats, self.args.seed, path);
-        let statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);
+        let mut statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);
+        if self.args.profile {
+            statistics.profile = Some(self.profile(prepared, &view, &integrator, &stats)?);
+        }
         reporter.result(&statistics);
+        if let Some(profile) = &statistics.profile {
+            reporter.say(&profile.to_string());
+        }
         match written.instead_because {
             Some(reason) => Err(reason),
             None => Ok(statistics),
@@ -183,12 +189,13 @@ impl Job<'_> {
             load_seconds: prepared.load_seconds,
             build_seconds: prepared.scene.build_seconds(),
             render_seconds,
-            backend_thread_seconds: stats.backend_time.as_secs_f64(),
+            backend_thread_seconds: stats.times.backend().as_secs_f64(),
             camera_rays: stats.camera_rays,
             shadow_rays: stats.shadow_rays,
             rays: stats.rays(),
             rays_per_second: stats.rays() as f64 / render_seconds.max(1e-9),
             peak_memory_bytes: peak_memory_bytes(),
+            profile: None,
             photons: Photons::of(stats),
             dropped_samples: stats.dropped_samples,
         }

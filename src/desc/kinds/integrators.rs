@@ -23,7 +23,7 @@ pub static PATH: Entry = Entry::new(
 );
 
 /// All of them.
-pub static INTEGRATORS: [Entry; 6] = [
+pub static INTEGRATORS: [Entry; 7] = [
     PATH,
     Entry::new(
         "Integrator",
@@ -78,6 +78,12 @@ pub static INTEGRATORS: [Entry; 6] = [
             &PHOTON_FILTER,
             &samplers::SEED,
         ],
+    ),
+    Entry::new(
+        "Integrator",
+        "ambientocclusion",
+        "How open surfaces are to what is around them, whatever lights and materials there are",
+        &[&COS_SAMPLE, &OCCLUSION_DISTANCE],
     ),
 ];
 
@@ -161,6 +167,18 @@ pub static RADIUS: Parameter = Parameter::float(
     0.0,
     FloatRange::NotNegative,
     "Radius of the estimates of the first pass; 0 for three pixels",
+)
+.unit("scene units");
+pub static COS_SAMPLE: Parameter = Parameter::flag(
+    "cossample",
+    true,
+    "Whether directions are drawn in proportion to the cosine; if not, all alike",
+);
+pub static OCCLUSION_DISTANCE: Parameter = Parameter::float(
+    "maxdistance",
+    0.0,
+    FloatRange::NotNegative,
+    "How far away things may be that block; 0 for any distance",
 )
 .unit("scene units");
 pub static VISUALIZE_STRATEGIES: Parameter =

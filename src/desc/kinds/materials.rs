@@ -149,6 +149,7 @@ pub static MATERIALS: [Entry; 12] = [
         "A fibre along the first texture coordinate, across which the second one runs: for curves",
         &[
             &SIGMA_A,
+            &HAIR_REFLECTANCE,
             &HAIR_COLOR,
             &EUMELANIN,
             &PHEOMELANIN,
@@ -343,10 +344,15 @@ pub static SIGMA_A: Parameter = Parameter::new(
     ParameterKind::Absorption,
     "Absorption over the radius of a fibre; counts before `color` and pigments",
 );
+pub static HAIR_REFLECTANCE: Parameter = Parameter::new(
+    "reflectance",
+    ParameterKind::Reflectance { default: None },
+    "The colour of many fibres, instead of what one absorbs; counts before pigments",
+);
 pub static HAIR_COLOR: Parameter = Parameter::new(
     "color",
     ParameterKind::Reflectance { default: None },
-    "The colour of many fibres, instead of what one absorbs; counts before pigments",
+    "An older name of `reflectance`",
 );
 pub static EUMELANIN: Parameter = Parameter::new(
     "eumelanin",

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::images::PendingImages;
+use super::images::{self, PendingImages};
 use super::report::Report;
 use super::texture_names::Textures;
-use crate::desc::{ColorSpace, ParseOptions, bytes};
+use crate::desc::{ColorSpace, ImageDesc, ParseOptions, bytes};
 use crate::error::Span;
 
 /// What every part of the reader shares: the report and the files.
@@ -85,6 +85,14 @@ impl Context {
     /// Counts a file that was hashed on its own.
     pub fn count_hash(&mut self, hash: &blake3::Hash) {
         self.hasher.update(hash.as_bytes());
+    }
+
+    /// Reads the images that are named, and counts them.
+    pub fn read_images(&mut self, pending: &PendingImages) -> Vec<ImageDesc> {
+        let hasher = &mut self.hasher;
+        images::read(pending, &mut self.report, |hash| {
+            hasher.update(hash.as_bytes());
+        })
     }
 
     /// The hash of everything counted.

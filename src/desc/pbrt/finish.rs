@@ -8,8 +8,8 @@ use super::builder::Builder;
 use super::files::Context;
 use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
+use super::suggest;
 use super::world::{RawShape, Slot, World, default_material};
-use super::{images, suggest};
 use crate::desc::{
     InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc,
     ShapeKind, ply,
@@ -43,7 +43,8 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     let materials = resolve_materials(materials.into_slots(), &mut context.report);
     let media = media.finish(&mut context.report);
     let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
-    let images = images::read(&std::mem::take(&mut context.images), &mut context);
+    let images = std::mem::take(&mut context.images);
+    let images = context.read_images(&images);
     let meshes = read_meshes(&meshes, &mut context);
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));

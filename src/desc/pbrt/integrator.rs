@@ -4,22 +4,18 @@ use super::reader::{ParamReader, unknown_type};
 use crate::desc::kinds::Parameter;
 use crate::desc::kinds::{integrators as kinds, samplers};
 use crate::desc::{
-    Distribution, Heuristic, INTEGRATORS, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, PathDesc,
-    PhotonDesc, PhotonFilter, SppmDesc, Strategy, Termination, Terms,
+    Distribution, Heuristic, INTEGRATORS, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc,
+    PathDesc, PhotonDesc, PhotonFilter, SppmDesc, Strategy, Termination, Terms,
 };
-
-/// If a file has no integrator.
-const DEFAULT_MAX_DEPTH: u32 = 5;
 
 /// pbrt's integrators that one of Lucerna's stands for: its name and what to say. All converge to
 /// the same image.
-const STAND_INS: [(&str, &str, &str); 5] = [
+const STAND_INS: [(&str, &str, &str); 4] = [
     (
         "mlt",
         "bdpt",
         "`mlt` is not there: `bdpt` is used, which has the same paths but samples them independently",
     ),
-    ("volpath", "path", "`volpath` is taken for `path`"),
     (
         "simplevolpath",
         "path",
@@ -38,22 +34,12 @@ const STAND_INS: [(&str, &str, &str); 5] = [
 ];
 
 /// Those that render something else than light.
-const OTHERS: [(&str, &str); 2] = [
-    ("ambientocclusion", "shows how open surfaces are, not light"),
-    ("function", "integrates a function, not light"),
-];
-
-/// Path tracing with 5 bounces, as in pbrt-v4.
-pub(super) fn default() -> IntegratorDesc {
-    IntegratorDesc {
-        max_depth: Some(DEFAULT_MAX_DEPTH),
-        light_sampler: LightSamplerKind::default(),
-        kind: IntegratorKind::Path(PathDesc::default()),
-    }
-}
+const OTHERS: [(&str, &str); 1] = [("function", "integrates a function, not light")];
 
 /// Reads an integrator of type `kind`.
 pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
+    // One integrator here, with and without media.
+    let kind = if kind == "volpath" { "path" } else { kind };
     let stand_in = STAND_INS.iter().find(|&&(name, ..)| name == kind);
     let name = stand_in.map_or(kind, |&(_, name, _)| name);
     let entry = INTEGRATORS.iter().find(|entry| entry.name == name).unwrap_or_else(|| {
@@ -64,7 +50,11 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
         let span = reader.span;
         reader.report().warning(span, *message);
     }
-    let max_depth = u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok();
+    let max_depth = if entry.has(kinds::MAX_DEPTH.name) {
+        u32::try_from(reader.integer_by(&kinds::MAX_DEPTH)).ok()
+    } else {
+        IntegratorDesc::default().max_depth
+    };
     // The oracle chooses no lights.
     let (light_sampler, kind) = match entry.name {
         "kajiya" => {
@@ -74,6 +64,13 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str) -> IntegratorDesc {
         "photon" => (light_sampler(&mut reader), IntegratorKind::Photon(photon(&mut reader))),
         "sppm" => (light_sampler(&mut reader), IntegratorKind::Sppm(sppm(&mut reader))),
         "lightpath" => (LightSamplerKind::default(), IntegratorKind::LightTracer),
+        "ambientocclusion" => {
+            let desc = OcclusionDesc {
+                cosine: reader.bool_by(&kinds::COS_SAMPLE),
+                max_distance: positive(reader.float_by(&kinds::OCCLUSION_DISTANCE)),
+            };
+            (LightSamplerKind::default(), IntegratorKind::Occlusion(desc))
+        }
         "bdpt" => {
             flag_without_effect(&mut reader, &kinds::REGULARIZE, UNREGULARIZED);
             for flag in [&kinds::VISUALIZE_STRATEGIES, &kinds::VISUALIZE_WEIGHTS] {

@@ -15,7 +15,7 @@ use crate::desc::kinds::lights::{
 };
 use crate::desc::{
     AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
-    SpectrumValue,
+    SpectrumValue, SpotFalloff,
 };
 use crate::image_io::{self, Encoding, Image};
 use crate::sampling::SphereMap;
@@ -136,7 +136,13 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
         let range = format!("no more than `{}`, {angle}", CONE_ANGLE.name);
         reader.out_of_range(CONE_DELTA.name, &delta.to_string(), &range);
     }
-    LightKind::Spot { from, to, angle, delta }
+    LightKind::Spot {
+        from,
+        to,
+        angle,
+        delta,
+        falloff: SpotFalloff::Smooth,
+    }
 }
 
 fn infinite(reader: &mut ParamReader<'_>) -> (LightKind, Option<SpectrumDesc>) {

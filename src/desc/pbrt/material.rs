@@ -193,6 +193,7 @@ fn roughness(reader: &mut ParamReader<'_>, [both, u, v]: &RoughnessNames) -> Rou
             "beckmann" => DistributionDesc::Beckmann,
             _ => DistributionDesc::Ggx,
         },
+        separable_masking: false,
     }
 }
 
@@ -234,6 +235,7 @@ fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind 
 fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
     let names = [
         kinds::SIGMA_A.name,
+        kinds::HAIR_REFLECTANCE.name,
         kinds::HAIR_COLOR.name,
         kinds::EUMELANIN.name,
         kinds::PHEOMELANIN.name,
@@ -249,7 +251,9 @@ fn hair(reader: &mut ParamReader<'_>) -> HairDesc {
         }
     }
     let absorption = reader.absorption_by(&kinds::SIGMA_A);
-    let color = reader.reflectance_by(&kinds::HAIR_COLOR);
+    let colors = [&kinds::HAIR_REFLECTANCE, &kinds::HAIR_COLOR].map(|color| reader.reflectance_by(color));
+    let [reflectance, color] = colors;
+    let color = reflectance.or(color);
     let pigments = [&kinds::EUMELANIN, &kinds::PHEOMELANIN].map(|pigment| reader.pigment_by(pigment));
     HairDesc {
         color: match (absorption, color, pigments) {
@@ -295,6 +299,7 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         sheen_tint: textured(&kinds::SHEEN_TINT),
         clearcoat: textured(&kinds::CLEARCOAT),
         clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
+        as_in_mitsuba: false,
         base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
         eta: if given {
             ((1.0 + reflected) / (1.0 - reflected)) as f32

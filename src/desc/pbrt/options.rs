@@ -137,9 +137,12 @@ impl Options {
                 report.error(span, format!("there is a view `{name}` already"));
             }
             let [open, close] = camera.camera.shutter;
-            // The exposure of pbrt-v3 does not go by the shutter.
-            let exposure_time = if report.is_old() { 1.0 } else { close - open };
-            let film = self.film.clone().unwrap_or_else(|| film::default_film(file));
+            let exposure_time = close - open;
+            let mut film = self.film.clone().unwrap_or_else(|| film::default_film(file));
+            if report.is_old() {
+                // The exposure of pbrt-v3 does not go by the shutter.
+                film.iso /= exposure_time;
+            }
             views.push(ViewDesc {
                 name,
                 camera: camera.camera.clone(),
@@ -162,7 +165,7 @@ impl Options {
 
     /// The integrator; by default path tracing with 5 bounces.
     pub fn integrator(&self) -> IntegratorDesc {
-        self.integrator.clone().unwrap_or_else(integrator::default)
+        self.integrator.clone().unwrap_or_default()
     }
 }
 

@@ -83,7 +83,7 @@ impl Estimator for VolumePath {
     fn flush_own_shadows(&self, scene: &Scene, memory: &mut MediaShadows, slots: &mut [Slot], stats: &mut RenderStats) {
         let (traced, elapsed) = memory.flush(scene, &self.0.direct_light(), slots);
         stats.shadow_rays += traced;
-        stats.backend_time += elapsed;
+        stats.times.shadow += elapsed;
     }
 
     fn shade<'s>(&self, stage: &mut VolumeStage<'_, 's>, vertex: Vertex<'_, Traveller>) {

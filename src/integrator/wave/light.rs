@@ -1,9 +1,12 @@
 //! The light paths of a wave.
 
+use std::time::Instant;
+
 use super::Wave;
 use crate::integrator::lane::Slot;
 use crate::integrator::numbers::LIGHT_BRANCH;
 use crate::integrator::stage::Estimator;
+use crate::integrator::times::lap;
 use crate::material::TransportMode;
 use crate::sampling::SampleStream;
 
@@ -35,7 +38,9 @@ impl<'s, E: Estimator> Wave<'s, E> {
     ) -> (&[Slot], &mut E::Memory<'s>) {
         let streams: Vec<_>;
         (self.slots, streams) = paths.unzip();
+        let mut start = Instant::now();
         self.emit_by(&streams);
+        lap(&mut start, &mut self.stats.times.sample);
         self.finish_pending();
         (&self.slots, &mut self.memory)
     }

@@ -23,7 +23,8 @@ use super::numbers::EventLanes;
 use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
 use super::stage::{Estimator, Stage, Vertex};
-use crate::accel::RayKind;
+use super::times::lap;
+use crate::accel::{RayKind, RayOrigin};
 use crate::film::{Film, Splat, TILE_SIZE};
 use crate::geometry::{HitPacket, LANES, SurfaceLanes};
 use crate::material::TransportMode;
@@ -103,15 +104,20 @@ impl<'s, E: Estimator> Wave<'s, E> {
             (u64::from(WAVE_LANES) / pixels.all().area()).max(1) as u32
         };
         for first in samples.clone().step_by(at_once as usize) {
+            let mut start = Instant::now();
             let camera_rays = self.generate(&pixels, first..(first + at_once).min(samples.end));
             self.first_hits.restart(self.slots.len(), self.film.kind());
             if E::LIGHT_PATHS {
                 self.emit();
-                self.finish_pending();
             }
+            lap(&mut start, &mut self.stats.times.sample);
+            // Light paths, if there are any, go before.
+            self.finish_pending();
             self.pending.push(camera_rays);
             self.finish_pending();
+            start = Instant::now();
             self.retire(place.tile);
+            lap(&mut start, &mut self.stats.times.film);
         }
     }
 
@@ -153,18 +159,33 @@ impl<'s, E: Estimator> Wave<'s, E> {
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
         }
-        let start = Instant::now();
+        self.scene.accel().announce(RayOrigin {
+            from_light: batch.mode == TransportMode::Importance,
+            depth: batch.depth,
+        });
+        let mut start = Instant::now();
         self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
-        self.stats.backend_time += start.elapsed();
-        if kind == RayKind::Bounce {
-            self.stats.bounce_rays += batch.lanes.len() as u64;
-        }
+        let (stats, count) = (&mut self.stats, batch.lanes.len() as u64);
+        let time = match (kind, batch.mode) {
+            (RayKind::Bounce, TransportMode::Importance) => {
+                stats.photon_rays += count;
+                &mut stats.times.photon
+            }
+            (RayKind::Bounce, TransportMode::Radiance) => {
+                stats.bounce_rays += count;
+                &mut stats.times.bounce
+            }
+            // Camera rays were counted where they were made: some are traced for the sake of their packets.
+            (RayKind::Camera | RayKind::Shadow, _) => &mut stats.times.camera,
+        };
+        lap(&mut start, time);
     }
 
     /// Shades each lane, collects those that go on, and brings home what lights send.
     fn shade(&mut self, batch: &Batch<E::State>) {
         let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
         let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
+        let (mut start, shadows_before) = (Instant::now(), stats.times.shadow);
         let mut surfaces = std::mem::take(&mut self.surfaces);
         let mut first_hits = std::mem::take(&mut self.first_hits);
         let (view, space) = (self.view, self.gbuffer_space());
@@ -207,6 +228,8 @@ impl<'s, E: Estimator> Wave<'s, E> {
         }
         stage.finish();
         stage.flush_shadows(&mut stats);
+        lap(&mut start, &mut stats.times.shade);
+        stats.times.shade -= stats.times.shadow - shadows_before;
         (self.hits, self.stats, self.surfaces, self.first_hits) = (hits, stats, surfaces, first_hits);
     }
 }

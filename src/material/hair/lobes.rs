@@ -46,8 +46,13 @@ fn ln_bessel(x: f64) -> f64 {
         f64::ln(sum)
     } else {
         let y = 1.0 / (8.0 * x);
-        let series = 1.0 + y * (1.0 + y * (4.5 + y * (37.5 + y * (459.375 + y * 7441.875))));
-        x - 0.5 * (2.0 * std::f64::consts::PI * x).ln() + series.ln()
+        // Each coefficient is the one before times (2 k - 1)² / k.
+        let (mut term, mut series) = (1.0, 1.0);
+        for k in 1..8 {
+            term *= y * f64::from((2 * k - 1) * (2 * k - 1)) / f64::from(k);
+            series += term;
+        }
+        x - 0.5 * (2.0 * std::f64::consts::PI * x).ln() + f64::ln(series)
     }
 }
 

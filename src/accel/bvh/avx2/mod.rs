@@ -16,11 +16,11 @@ use super::node::ChildRef;
 use super::node::{Planes, WIDTH};
 use super::query::Query;
 use super::ray::{LocalRay, Slab};
-use super::stream;
+use super::stream::{self, Plan};
 use super::traverse::{self, Level, Walk};
 use super::tree::FixedTree;
 use super::triangle::Shear;
-use crate::accel::{HitFilter, RayKind};
+use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, RayPacket};
 
 /// Proof that the processor has AVX2 and fused multiply-add.
@@ -43,19 +43,19 @@ impl Avx2 {
     pub fn intersect(
         self,
         scene: &Scene,
-        kind: RayKind,
+        plan: Plan,
         rays: &[RayPacket],
         hits: &mut [HitPacket],
         filter: Option<&dyn HitFilter>,
     ) {
         // SAFETY: `self` proves that the processor has AVX2 and FMA.
-        unsafe { intersect(self, scene, kind, rays, hits, filter) }
+        unsafe { intersect(self, scene, plan, rays, hits, filter) }
     }
 
     /// Occlusion, by packets.
-    pub fn occluded(self, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    pub fn occluded(self, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         // SAFETY: `self` proves that the processor has AVX2 and FMA.
-        unsafe { occluded(self, scene, rays, filter) }
+        unsafe { occluded(self, scene, plan, rays, filter) }
     }
 }
 
@@ -63,17 +63,17 @@ impl Avx2 {
 fn intersect(
     kernel: Avx2,
     scene: &Scene,
-    kind: RayKind,
+    plan: Plan,
     rays: &[RayPacket],
     hits: &mut [HitPacket],
     filter: Option<&dyn HitFilter>,
 ) {
-    stream::intersect(kernel, kernel, scene, kind, rays, hits, filter);
+    stream::intersect(kernel, kernel, scene, plan, rays, hits, filter);
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-fn occluded(kernel: Avx2, scene: &Scene, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
-    stream::occluded(kernel, kernel, scene, rays, filter);
+fn occluded(kernel: Avx2, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
+    stream::occluded(kernel, kernel, scene, plan, rays, filter);
 }
 
 const CACHE_LINE: usize = 64;

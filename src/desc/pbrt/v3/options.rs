@@ -20,6 +20,9 @@ pub(super) fn film(old: &mut Old<'_>, kind: &mut String) {
 }
 
 pub(super) fn sampler(old: &mut Old<'_>, kind: &mut String) {
+    old.drop("dimensions", "the `dimensions` of a sampler have no effect");
+    let centers = "`samplepixelcenter` has no effect: samples are spread over pixels";
+    old.drop("samplepixelcenter", centers);
     let new = match kind.as_str() {
         "lowdiscrepancy" | "02sequence" => "paddedsobol",
         "maxmindist" => "pmj02bn",
@@ -28,7 +31,6 @@ pub(super) fn sampler(old: &mut Old<'_>, kind: &mut String) {
     };
     new.clone_into(kind);
     old.note("pbrt-v4 has other names of samplers: `paddedsobol`, `pmj02bn`, `independent`");
-    old.drop("dimensions", "the `dimensions` of a sampler have no effect");
 }
 
 pub(super) fn filter(old: &mut Old<'_>, kind: &str) {
@@ -61,7 +63,14 @@ pub(super) fn integrator(old: &mut Old<'_>, kind: &mut String) {
             old.take("strategy");
             old.add(ParamType::Integer, "maxdepth", Values::Integers(vec![1]), old.span);
         }
-        "ao" => "ambientocclusion".clone_into(kind),
+        "ao" => {
+            "ambientocclusion".clone_into(kind);
+            old.note("the integrator `ao` is `ambientocclusion` in pbrt-v4");
+            old.drop(
+                "nsamples",
+                "the `nsamples` of ambient occlusion have no effect: the sampler's count",
+            );
+        }
         "whitted" => {
             let message = "the integrator `whitted` of pbrt-v3 has no counterpart";
             old.refuse(old.span, message, "`path` is used");

@@ -1,10 +1,10 @@
 //! Lights.
 
-use super::Writer;
+use super::{Writer, unwritable};
 use glam::DVec3;
 
 use super::entity::Entity;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind, SpectrumDesc};
+use crate::desc::{AreaLightDesc, LightDesc, LightKind, SpectrumDesc, SpotFalloff};
 use crate::error::Result;
 
 impl Writer<'_> {
@@ -34,7 +34,16 @@ impl Writer<'_> {
             LightKind::Point { from } => {
                 e.point("point3", "from", *from);
             }
-            LightKind::Spot { from, to, angle, delta } => {
+            LightKind::Spot {
+                from,
+                to,
+                angle,
+                delta,
+                falloff,
+            } => {
+                if *falloff != SpotFalloff::Smooth {
+                    return Err(unwritable("the falloff of Mitsuba's spots"));
+                }
                 e.point("point3", "from", *from)
                     .point("point3", "to", *to)
                     .float("coneangle", *angle)

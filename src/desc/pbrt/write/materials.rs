@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::Writer;
 use super::entity::Entity;
+use super::{Writer, unwritable};
 use crate::desc::{
     CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
     ReliefDesc, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, Textured,
@@ -76,8 +76,12 @@ impl Writer<'_> {
             MaterialKind::Hair(_) => "hair",
             MaterialKind::Interface => "interface",
             MaterialKind::Mix { .. } => "mix",
+            MaterialKind::Principled(desc) if desc.as_in_mitsuba => return Err(unwritable("Mitsuba's `principled`")),
             MaterialKind::Principled(_) => "principled",
             MaterialKind::Measured(_) => "measured",
+            MaterialKind::Sided { .. } => return Err(unwritable("a material that is black from one side")),
+            MaterialKind::Tinted { .. } => return Err(unwritable("the specular reflectance of a material")),
+            MaterialKind::Plastic(_) => return Err(unwritable("Mitsuba's `plastic`")),
         };
         e.string("type", name);
         let names = &self.texture_names.clone();
@@ -104,6 +108,7 @@ impl Writer<'_> {
                 multiple_scattering,
             } => {
                 put_metal(e, interface, ["eta", "k"], names);
+                check_masking(roughness)?;
                 self.roughness(e, roughness, "", true);
                 self.multiple_scattering(e, *multiple_scattering);
             }
@@ -113,6 +118,7 @@ impl Writer<'_> {
                 multiple_scattering,
             } => {
                 put_index(e, "eta", eta);
+                check_masking(roughness)?;
                 self.roughness(e, roughness, "", true);
                 self.multiple_scattering(e, *multiple_scattering);
             }
@@ -145,6 +151,8 @@ impl Writer<'_> {
                 put_principled(e, principled, names);
                 self.note("Material \"principled\"");
             }
+            // Refused above.
+            MaterialKind::Sided { .. } | MaterialKind::Tinted { .. } | MaterialKind::Plastic(_) => {}
             MaterialKind::Measured(measured) => {
                 let file = self.parts.file(&measured.path)?;
                 e.string("filename", &file);
@@ -172,6 +180,15 @@ impl Writer<'_> {
             }
         }
     }
+}
+
+/// Complains about facets that pbrt-v4 has not.
+fn check_masking(roughness: &RoughnessDesc) -> Result<()> {
+    let smooth = Textured::Value(0.0);
+    if roughness.separable_masking && (roughness.u != smooth || roughness.v != smooth) {
+        return Err(unwritable("the masking of Mitsuba's rough surfaces"));
+    }
+    Ok(())
 }
 
 fn put_metal(e: &mut Entity, interface: &ConductorDesc, [eta_name, k_name]: [&str; 2], names: &[String]) {
@@ -205,7 +222,7 @@ fn put_coat(e: &mut Entity, coat: &CoatDesc, names: &[String]) {
 fn put_hair(e: &mut Entity, hair: &HairDesc, names: &[String]) {
     match &hair.color {
         HairColorDesc::Absorption(sigma) => e.spectrum_textured("sigma_a", sigma, names),
-        HairColorDesc::Reflectance(color) => e.spectrum_textured("color", color, names),
+        HairColorDesc::Reflectance(color) => e.spectrum_textured("reflectance", color, names),
         HairColorDesc::Pigments { eumelanin, pheomelanin } => e
             .float_textured("eumelanin", eumelanin, names)
             .float_textured("pheomelanin", pheomelanin, names),

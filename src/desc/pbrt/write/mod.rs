@@ -12,7 +12,6 @@ mod textures;
 mod view;
 
 use std::collections::BTreeSet;
-use std::io::Write as _;
 use std::path::Path;
 
 use entity::{Entity, quoted, transform};
@@ -21,6 +20,7 @@ use parts::Parts;
 
 use super::super::{ColorSpace, MotionDesc, SceneDesc};
 use crate::error::{Error, Result};
+use crate::image_io::replace_file;
 
 /// Writes `desc` to the file `path`, and what belongs to it into the folder `NAME-parts` beside, where `path` is `NAME.pbrt`. Returns
 /// the extensions that the file uses, for people.
@@ -44,8 +44,13 @@ pub fn write(desc: &SceneDesc, path: &Path) -> Result<Vec<String>> {
     writer.materials()?;
     writer.lights()?;
     writer.shapes()?;
-    writer.save(path)?;
+    replace_file(path, writer.text.as_bytes())?;
     Ok(writer.notes.into_iter().collect())
+}
+
+/// The error for what Mitsuba's scenes have, and neither pbrt-v4 nor its extensions can say.
+fn unwritable(what: &str) -> Error {
+    Error::Usage(format!("{what} cannot be written to a pbrt-v4 file"))
 }
 
 /// A file in the making.
@@ -115,15 +120,5 @@ impl Writer<'_> {
     /// Says that the file goes beyond pbrt-v4.
     fn note(&mut self, extension: &str) {
         self.notes.insert(extension.to_owned());
-    }
-
-    /// Replaces the file, all at once.
-    fn save(&self, path: &Path) -> Result<()> {
-        let io = |error| Error::io("write", path, error);
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(io)?;
-        file.write_all(self.text.as_bytes()).map_err(io)?;
-        file.persist(path).map_err(|error| io(error.error))?;
-        Ok(())
     }
 }

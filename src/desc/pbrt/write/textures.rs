@@ -1,7 +1,7 @@
 //! Textures.
 
-use super::Writer;
 use super::entity::{Entity, transform};
+use super::{Writer, unwritable};
 use crate::desc::{
     ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, SceneDesc, SpectrumDesc, TextureDesc,
     TextureKind, Textured, WrapDesc,
@@ -101,7 +101,7 @@ impl Writer<'_> {
             }
             TextureKind::Checkerboard2 { textures, mapping } => {
                 two(e, textures);
-                put_mapping(e, mapping);
+                put_mapping(e, mapping)?;
             }
             TextureKind::Checkerboard3 { textures } => {
                 two(e, textures);
@@ -114,13 +114,13 @@ impl Writer<'_> {
             } => {
                 V::textured(e, "inside", inside, names);
                 V::textured(e, "outside", outside, names);
-                put_mapping(e, mapping);
+                put_mapping(e, mapping)?;
             }
             TextureKind::Bilerp { corners, mapping } => {
                 for (name, corner) in ["v00", "v01", "v10", "v11"].into_iter().zip(corners) {
                     V::value(e, name, corner);
                 }
-                put_mapping(e, mapping);
+                put_mapping(e, mapping)?;
             }
             TextureKind::Image(map) => self.image_map(e, map)?,
             TextureKind::Fbm(octaves) | TextureKind::Wrinkled(octaves) => put_octaves(e, octaves),
@@ -149,6 +149,7 @@ impl Writer<'_> {
             WrapDesc::Repeat => "repeat",
             WrapDesc::Black => "black",
             WrapDesc::Clamp => "clamp",
+            WrapDesc::Mirror => return Err(unwritable("an image that is mirrored at its edges")),
             WrapDesc::OctahedralSphere => "octahedralsphere",
         };
         entity.string("wrap", wrap);
@@ -160,12 +161,11 @@ impl Writer<'_> {
                 entity.string("filter", "EWA").single("maxanisotropy", max_anisotropy)
             }
         };
-        put_mapping(entity, &map.mapping);
-        Ok(())
+        put_mapping(entity, &map.mapping)
     }
 }
 
-fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) {
+fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) -> Result<()> {
     match mapping {
         MappingDesc::Uv { scale, delta } => {
             entity
@@ -175,6 +175,7 @@ fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) {
                 .single("udelta", delta.x)
                 .single("vdelta", delta.y);
         }
+        MappingDesc::Affine { .. } => return Err(unwritable("texture coordinates that are turned or sheared")),
         MappingDesc::Spherical => {
             entity.string("mapping", "spherical");
         }
@@ -190,6 +191,7 @@ fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) {
                 .single("vdelta", delta.y);
         }
     }
+    Ok(())
 }
 
 fn put_octaves(entity: &mut Entity, octaves: &OctavesDesc) {

@@ -266,6 +266,7 @@ impl Writer<'_> {
             IntegratorKind::LightTracer => "lightpath",
             IntegratorKind::Photon(_) => "photon",
             IntegratorKind::Sppm(_) => "sppm",
+            IntegratorKind::Occlusion(_) => "ambientocclusion",
         };
         let name = if name == "path" && !self.desc.media.is_empty() {
             "volpath"
@@ -273,6 +274,12 @@ impl Writer<'_> {
             name
         };
         let mut entity = Entity::new("Integrator", name);
+        if let IntegratorKind::Occlusion(occlusion) = integrator.kind {
+            entity
+                .boolean("cossample", occlusion.cosine)
+                .single("maxdistance", occlusion.max_distance.unwrap_or(0.0));
+            return self.put(entity);
+        }
         entity.integer("maxdepth", integrator.max_depth.map_or(-1, i64::from));
         if integrator.max_depth.is_none() {
             self.note("Integrator \"integer maxdepth\" -1");
@@ -318,7 +325,7 @@ impl Writer<'_> {
             IntegratorKind::Bdpt(weights) => {
                 entity.string("heuristic", heuristic(weights));
             }
-            IntegratorKind::LightTracer => {}
+            IntegratorKind::LightTracer | IntegratorKind::Occlusion(_) => {}
             IntegratorKind::Photon(photon) => {
                 let count = |count: Option<u32>| count.map_or(-1, i64::from);
                 entity

@@ -6,15 +6,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::files::Context;
 use super::report::Report;
-use crate::desc::{ColorSpace, ImageDesc, ImageId};
+use super::{ColorSpace, ImageDesc, ImageId};
 use crate::error::{Error, Span};
 use crate::image_io::{self, Encoding, Image};
 
 /// The images named so far.
 #[derive(Debug, Default)]
-pub(super) struct PendingImages {
+pub(in crate::desc) struct PendingImages {
     /// The files, and where each was first named.
     files: Vec<(PathBuf, Encoding, Span)>,
     /// By path and name of the encoding.
@@ -34,8 +33,13 @@ impl PendingImages {
     }
 }
 
-/// Reads all images and counts them in the hash. Complains about those that cannot be read, and leaves them out.
-pub(super) fn read(pending: &PendingImages, context: &mut Context) -> Vec<ImageDesc> {
+/// Reads all images; `count` is told the hash of each file, in order. Complains about those that cannot be read, and leaves them
+/// out.
+pub(in crate::desc) fn read(
+    pending: &PendingImages,
+    report: &mut Report,
+    mut count: impl FnMut(&blake3::Hash),
+) -> Vec<ImageDesc> {
     let files = &pending.files;
     let read: Vec<_> = files
         .par_iter()
@@ -45,22 +49,22 @@ pub(super) fn read(pending: &PendingImages, context: &mut Context) -> Vec<ImageD
     for ((path, encoding, span), outcome) in files.iter().zip(read) {
         match outcome {
             Ok((image, hash)) => {
-                context.count_hash(&hash);
-                check_color_space(&mut context.report, *span, path, &image);
+                count(&hash);
+                check_color_space(report, *span, path, &image);
                 images.push(ImageDesc {
                     path: path.clone(),
                     encoding: *encoding,
                     image: Arc::new(image),
                 });
             }
-            Err(problem) => context.report.error(*span, problem),
+            Err(problem) => report.error(*span, problem),
         }
     }
     images
 }
 
 /// Says so if the colours of an image are in a space that has no name.
-pub(super) fn check_color_space(report: &mut Report, span: Span, path: &Path, image: &Image) {
+pub(in crate::desc) fn check_color_space(report: &mut Report, span: Span, path: &Path, image: &Image) {
     if let Some(chromaticities) = image.chromaticities()
         && ColorSpace::from_chromaticities(chromaticities).is_none()
     {

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::ParseOptions;
 use super::suggest;
-use crate::desc::ParseOptions;
 use crate::error::{Diagnostic, Severity, SourceMap, Span};
 
 /// After so many errors reading stops, and so many warnings are kept: whoever has more will want to fix these first.
@@ -12,7 +12,7 @@ const MOST: usize = 50;
 
 /// The files read so far, and what was found wrong in them.
 #[derive(Debug, Default)]
-pub(super) struct Report {
+pub(in crate::desc) struct Report {
     pub sources: SourceMap,
     texts: Vec<Arc<[u8]>>,
     errors: Vec<(Span, Diagnostic)>,

@@ -5,7 +5,7 @@ const LONGEST: usize = 64;
 
 /// The name that `word` is most likely a misspelling of, if any is close: at most a third of its letters wrong (at least one, and
 /// not all), not counting case.
-pub(super) fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(in crate::desc) fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let letters: Vec<char> = word.chars().take(LONGEST + 1).flat_map(char::to_lowercase).collect();
     if letters.is_empty() || letters.len() > LONGEST {
         return None;

@@ -1,0 +1,310 @@
+//! Spatial splits: triangles that a plane goes through are on both of its sides, each time in a box around the part that is there (Stich,
+//! Friedrich and Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies").
+//!
+//! A part, or fragment, is never lost: where the plane meets an edge is computed in double precision and rounded outwards, so the boxes of a
+//! triangle's fragments cover the triangle. (What the rays' own rounding needs is added where leaves are made.)
+
+use rayon::prelude::*;
+
+use super::bins::{CHUNK, cost};
+use super::item::{Box4, Extent, Item};
+use crate::math::{Vec3, Vec4};
+
+/// Bins along an axis.
+const BINS: usize = 16;
+
+/// Splits are not tried where the boxes of an object split have less than this part of the area of the whole tree in common (Stich et
+/// al. 2009, section 4.5).
+pub const LEAST_OVERLAP: f64 = 1e-5;
+
+/// Nor where they have less than this part of the area of the node in common, as little is to be gained there.
+pub const LEAST_SHARE: f64 = 0.1;
+
+/// The corners of the triangles that may be split.
+pub trait Corners: Sync {
+    /// Those of the item of this index; `None` if it is not to be split.
+    fn corners(&self, index: u32) -> Option<[Vec3; 3]>;
+}
+
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    axis: usize,
+    place: f32,
+    /// What the two sides cost.
+    pub cost: f64,
+    /// How many items are on both.
+    pub both: usize,
+}
+
+/// An edge's point at `place` along an axis, as a box that it is in for sure. The edge goes from one side to the other.
+fn crossing(a: Vec3, b: Vec3, axis: usize, place: f32) -> Box4 {
+    let (a, b) = (a.as_dvec3(), b.as_dvec3());
+    let fraction = (f64::from(place) - a[axis]) / (b[axis] - a[axis]);
+    let mut low = Vec4::ZERO;
+    let mut high = Vec4::ZERO;
+    for i in 0..3 {
+        let nearest = a[i] + (b[i] - a[i]) * fraction;
+        // More than the rounding of the operations before; that to single precision is less than a step of it.
+        let slack = (a[i].abs() + b[i].abs()) * 8.0 * f64::EPSILON;
+        low[i] = ((nearest - slack) as f32).next_down();
+        high[i] = ((nearest + slack) as f32).next_up();
+    }
+    (low[axis], high[axis]) = (place, place);
+    Box4 { low, high }
+}
+
+/// Boxes around what is of a triangle in a box on the two sides of a plane; one of them may be empty.
+fn cut(corners: &[Vec3; 3], within: Box4, axis: usize, place: f32) -> [Box4; 2] {
+    let (mut below, mut above) = (Box4::EMPTY, Box4::EMPTY);
+    for i in 0..3 {
+        let (a, b) = (corners[i], corners[(i + 1) % 3]);
+        if a[axis] <= place {
+            below = below.grow(a.extend(0.0));
+        }
+        if a[axis] >= place {
+            above = above.grow(a.extend(0.0));
+        }
+        if (a[axis] < place && b[axis] > place) || (a[axis] > place && b[axis] < place) {
+            let point = crossing(a, b, axis, place);
+            below = below.union(point);
+            above = above.union(point);
+        }
+    }
+    below.high[axis] = below.high[axis].min(place);
+    above.low[axis] = above.low[axis].max(place);
+    [below.intersection(within), above.intersection(within)]
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Box4,
+    /// Items that begin here.
+    enter: usize,
+    /// Items that end here.
+    exit: usize,
+}
+
+type Histogram = [[Bin; BINS]; 3];
+
+const NOTHING: Histogram = [[Bin {
+    bounds: Box4::EMPTY,
+    enter: 0,
+    exit: 0,
+}; BINS]; 3];
+
+/// Cuts a box into equal slabs.
+#[derive(Clone, Copy)]
+struct Slabs {
+    low: Vec3,
+    step: Vec3,
+}
+
+impl Slabs {
+    fn place(&self, axis: usize, bin: usize) -> f32 {
+        self.low[axis] + self.step[axis] * bin as f32
+    }
+
+    fn bin(&self, axis: usize, x: f32) -> usize {
+        (((x - self.low[axis]) / self.step[axis]) as usize).min(BINS - 1)
+    }
+}
+
+/// The plane of least cost between slabs of the items' box, if there is one that divides them.
+pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Option<Plane> {
+    let bounds = extent.bounds.bounds();
+    let slabs = Slabs {
+        low: bounds.min,
+        step: bounds.extent() / BINS as f32,
+    };
+    let of_chunk = |chunk: &[Item]| {
+        let mut histogram = NOTHING;
+        for item in chunk {
+            add(&mut histogram, item, &slabs, corners);
+        }
+        histogram
+    };
+    let union = |a: Histogram, b: Histogram| {
+        std::array::from_fn(|axis| {
+            std::array::from_fn(|bin| {
+                let (a, b): (&Bin, &Bin) = (&a[axis][bin], &b[axis][bin]);
+                Bin {
+                    bounds: a.bounds.union(b.bounds),
+                    enter: a.enter + b.enter,
+                    exit: a.exit + b.exit,
+                }
+            })
+        })
+    };
+    let histogram = if items.len() <= CHUNK {
+        of_chunk(items)
+    } else {
+        items.par_chunks(CHUNK).map(of_chunk).reduce(|| NOTHING, union)
+    };
+    let mut best: Option<Plane> = None;
+    for (axis, bins) in histogram.iter().enumerate() {
+        if !(slabs.step[axis] > 0.0 && slabs.step[axis].is_finite()) {
+            continue;
+        }
+        let mut above = [(0.0, 0); BINS];
+        let (mut upper, mut count) = (Box4::EMPTY, 0);
+        for bin in (1..BINS).rev() {
+            upper = upper.union(bins[bin].bounds);
+            count += bins[bin].exit;
+            above[bin] = (cost(&upper, count), count);
+        }
+        let (mut lower, mut count) = (Box4::EMPTY, 0);
+        for bin in 1..BINS {
+            lower = lower.union(bins[bin - 1].bounds);
+            count += bins[bin - 1].enter;
+            let (above_cost, above_count) = above[bin];
+            let cost = cost(&lower, count) + above_cost;
+            let divides = count < items.len() && above_count < items.len();
+            if divides && best.is_none_or(|best| cost < best.cost) {
+                best = Some(Plane {
+                    axis,
+                    place: slabs.place(axis, bin),
+                    cost,
+                    both: (count + above_count).saturating_sub(items.len()),
+                });
+            }
+        }
+    }
+    best
+}
+
+/// Adds an item to all slabs that it is in.
+fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corners) {
+    let bounds = item.box4();
+    let triangle = corners.corners(item.index());
+    for (axis, bins) in histogram.iter_mut().enumerate() {
+        let first = slabs.bin(axis, bounds.low[axis]);
+        let last = slabs.bin(axis, bounds.high[axis]).max(first);
+        let Some(triangle) = triangle.filter(|_| first < last) else {
+            // Not to be cut: where its middle is.
+            let bin = &mut bins[slabs.bin(axis, item.center()[axis])];
+            bin.bounds = bin.bounds.union(bounds);
+            bin.enter += 1;
+            bin.exit += 1;
+            continue;
+        };
+        bins[first].enter += 1;
+        bins[last].exit += 1;
+        let mut rest = bounds;
+        for (bin, slot) in bins.iter_mut().enumerate().take(last).skip(first) {
+            let [part, others] = cut(&triangle, rest, axis, slabs.place(axis, bin + 1));
+            if !part.is_empty() {
+                slot.bounds = slot.bounds.union(part);
+            }
+            rest = others;
+        }
+        if !rest.is_empty() {
+            bins[last].bounds = bins[last].bounds.union(rest);
+        }
+    }
+}
+
+/// Divides items by a plane: those below, then those above. An item that it goes through is cut in two, unless it costs less to have all of
+/// it on one side (Stich et al. 2009, "reference unsplitting"), or `room` for more items is used up.
+pub fn divide(items: &[Item], plane: &Plane, corners: &dyn Corners, room: usize) -> [Vec<Item>; 2] {
+    let (axis, place) = (plane.axis, plane.place);
+    let mut sides = [Vec::with_capacity(items.len()), Vec::with_capacity(items.len())];
+    let mut boxes = [Box4::EMPTY; 2];
+    let mut straddling = Vec::new();
+    for item in items {
+        let bounds = item.box4();
+        let triangle = corners.corners(item.index());
+        let side = match triangle {
+            _ if bounds.high[axis] <= place => 0,
+            _ if bounds.low[axis] >= place => 1,
+            None => usize::from(item.center()[axis] >= place),
+            Some(triangle) => {
+                let parts = cut(&triangle, bounds, axis, place);
+                match parts.map(|part| part.is_empty()) {
+                    [false, false] => {
+                        straddling.push((*item, parts));
+                        continue;
+                    }
+                    // Nothing of it is on the other side; a part that is not empty is there by rounding only.
+                    [true, _] => 1,
+                    [false, true] => 0,
+                }
+            }
+        };
+        boxes[side] = boxes[side].union(bounds);
+        sides[side].push(*item);
+    }
+    let mut room = room;
+    for (item, parts) in straddling {
+        let whole = item.box4();
+        let counts = [sides[0].len(), sides[1].len()];
+        let cut_cost = cost(&boxes[0].union(parts[0]), counts[0] + 1) + cost(&boxes[1].union(parts[1]), counts[1] + 1);
+        let whole_cost =
+            |side: usize| cost(&boxes[side].union(whole), counts[side] + 1) + cost(&boxes[1 - side], counts[1 - side]);
+        let costs = [whole_cost(0), whole_cost(1)];
+        if room > 0 && cut_cost < costs[0].min(costs[1]) {
+            room -= 1;
+            for side in 0..2 {
+                boxes[side] = boxes[side].union(parts[side]);
+                sides[side].push(Item::with_box(&parts[side], item.index()));
+            }
+            continue;
+        }
+        let side = usize::from(costs[1] < costs[0]);
+        boxes[side] = boxes[side].union(whole);
+        sides[side].push(item);
+    }
+    sides
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of a triangle stay in the boxes of its fragments, however often it is cut.
+    #[test]
+    fn fragments_cover_their_triangle() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1 << 24) as f32
+        };
+        for round in 0..2000 {
+            let size = 10f32.powi(round % 9 - 4);
+            let mut point = || Vec3::new(random(), random() * 0.01, random()) * size + Vec3::new(3.0, -1.0, 0.0);
+            let corners = [point(), point(), point()];
+            let whole = corners.iter().fold(Box4::EMPTY, |bounds, p| bounds.grow(p.extend(0.0)));
+            let mut parts = vec![whole];
+            for level in 0..6 {
+                let axis = level % 3;
+                let mut next = Vec::new();
+                for part in parts {
+                    let place = part.low[axis] + (part.high[axis] - part.low[axis]) * random();
+                    next.extend(
+                        cut(&corners, part, axis, place)
+                            .into_iter()
+                            .filter(|part| !part.is_empty()),
+                    );
+                }
+                parts = next;
+            }
+            for _ in 0..50 {
+                let (mut u, mut v) = (f64::from(random()), f64::from(random()));
+                if u + v > 1.0 {
+                    (u, v) = (1.0 - u, 1.0 - v);
+                }
+                let [a, b, c] = corners.map(Vec3::as_dvec3);
+                let p = a + (b - a) * u + (c - a) * v;
+                // The point itself is rounded here, by less than this.
+                let slack = 1e-14 * (p.abs().max_element() + f64::from(size));
+                let is_in = |part: &Box4| {
+                    let (low, high) = (part.low.truncate().as_dvec3(), part.high.truncate().as_dvec3());
+                    (p + slack).cmpge(low).all() && (p - slack).cmple(high).all()
+                };
+                assert!(parts.iter().any(is_in), "{corners:?} {p:?}");
+            }
+        }
+    }
+}
