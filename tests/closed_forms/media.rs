@@ -58,6 +58,8 @@ fn expected(
 /// A room whose walls emit e and reflect 0.5 has the radiance 2 e everywhere, whatever fills it that loses nothing, or that emits what
 /// it absorbs.
 fn check_room(name: &str, medium: &str, integrator: &str, inside: &str, fills_room: bool) {
+    // Paths through glass find lamps by chance only.
+    let spp = if inside.contains("dielectric") { 3 * SPP } else { SPP };
     let around = if fills_room { "MediumInterface \"m\"" } else { "" };
     let e = rgb(E);
     let text = format!(
@@ -68,7 +70,7 @@ fn check_room(name: &str, medium: &str, integrator: &str, inside: &str, fills_ro
     )
     .replace("\"float reflectance\" 0.5", "\"rgb reflectance\" [0.5 0.5 0.5]");
     // In one block: the field is uniform, and light that is scattered over and over is noisy.
-    check(name, &text, SPP, [8, 8], &Judge::USUAL, |mode| {
+    check(name, &text, spp, [8, 8], &Judge::USUAL, |mode| {
         expected(mode, E, &[], |v| 2.0 * v[0]).to_vec()
     });
 }

@@ -94,7 +94,7 @@ fn a_cylinder_lights_as_its_quadrature() {
     };
     check_with(
         "cylinder",
-        1024,
+        2048,
         &options(1),
         &lamp(3.0, false, &transform, &shape),
         |p| 3.0 * surface_irradiance(p, 1.0, point),
