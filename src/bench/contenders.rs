@@ -135,7 +135,9 @@ impl BuildPlan {
             Family::EmbreeFast | Family::EmbreeRobust => {
                 let scene = EmbreeScene::build(world, &options)?;
                 let way = |(name, calls)| (name, Box::new(scene.calling(calls)) as Box<dyn Accel>);
-                let ways = embree_ways().into_iter().map(way).collect();
+                let ways = embree_ways();
+                let ways = ways.into_iter().filter(|(_, calls)| calls.entry.is_safe_in(world));
+                let ways = ways.map(way).collect();
                 (Box::new(scene), ways)
             }
             #[cfg(not(feature = "embree"))]

@@ -49,7 +49,7 @@ fn configurations(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
         {
             use lucerna::accel::embree::{Calls, EmbreeScene, Entry};
             let scene = EmbreeScene::build(world, &options).unwrap();
-            for &entry in Entry::AVAILABLE {
+            for &entry in Entry::AVAILABLE.iter().filter(|entry| entry.is_safe_in(world)) {
                 for coherent in [false, true] {
                     let calls = Calls { entry, coherent };
                     all.push((
