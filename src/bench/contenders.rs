@@ -136,7 +136,7 @@ impl BuildPlan {
                 let scene = EmbreeScene::build(world, &options)?;
                 let way = |(name, calls)| (name, Box::new(scene.calling(calls)) as Box<dyn Accel>);
                 let ways = embree_ways();
-                let ways = ways.into_iter().filter(|(_, calls)| calls.entry.is_safe_in(world));
+                let ways = ways.into_iter().filter(|(_, calls)| calls.return_from(world));
                 let ways = ways.map(way).collect();
                 (Box::new(scene), ways)
             }

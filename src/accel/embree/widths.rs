@@ -7,7 +7,7 @@ use std::mem::MaybeUninit;
 use embree_sys as ffi;
 
 use super::query::{Query, STREAM_PACKETS, SingleRay, single_rays};
-use crate::geometry::{HitPacket, LANES, RayPacket, Shape, World};
+use crate::geometry::{HitPacket, LANES, RayPacket};
 
 /// Lanes that are copied at a time: they divide every width.
 const RUN: usize = 4;
@@ -34,17 +34,6 @@ impl Entry {
     } else {
         &[Self::Single, Self::Packet4, Self::Packet8, Self::Packet16]
     };
-
-    /// Whether it ends for every ray in `world`: Embree 3.13.5's `rtcOccluded16` has been seen not to return from instances of curves.
-    pub fn is_safe_in(self, world: &World) -> bool {
-        let has_curves = || {
-            world
-                .geometries()
-                .iter()
-                .any(|geometry| matches!(geometry.shape, Shape::Curves(_)))
-        };
-        self != Self::Packet16 || !has_curves()
-    }
 }
 
 /// Where lane `first` of a row of packets of 8 is: packet and lane.
