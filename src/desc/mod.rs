@@ -19,6 +19,8 @@
 
 pub mod bare;
 mod bytes;
+mod camera;
+mod film;
 mod images;
 mod integrator;
 mod kinds;
@@ -46,6 +48,8 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
 pub use crate::spectrum::ColorSpace;
+pub use camera::{ApertureDesc, CameraDesc, CameraKind, LensSurface, RealisticDesc, StopShape};
+pub use film::{CropDesc, FilmDesc, FilmKind, GBufferSpace, MeasureDesc, PixelRect, SensorDesc, SpectralBins};
 pub use integrator::{
     Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc,
     PhotonDesc, PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
@@ -68,10 +72,7 @@ pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
-pub use view::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
-    LensSurface, MeasureDesc, PixelRect, RealisticDesc, SamplerDesc, SensorDesc, SpectralBins, StopShape, ViewDesc,
-};
+pub use view::{FilterDesc, FilterKind, SamplerDesc, ViewDesc};
 
 /// A whole scene, as its file describes it.
 ///
