@@ -14,7 +14,7 @@ use crate::accel;
 use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
-use crate::light::{LightId, LightSampler};
+use crate::light::{Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::AnimatedTransform;
 use crate::texture::FloatTexture;
@@ -68,6 +68,12 @@ impl Scene {
         let accel = Arc::from(accel::build(options.backend, &world, &options.build)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
+        let in_media: &[Light] = if desc.media.is_empty() {
+            &[]
+        } else {
+            &builder.lights.lights
+        };
+        let point_sampler = LightSampler::points(in_media, &bounds);
         let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
             LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
@@ -90,6 +96,7 @@ impl Scene {
             environments: builder.lights.environments,
             light_sampler,
             emission_sampler,
+            point_sampler,
             build_seconds,
         })
     }
