@@ -113,48 +113,20 @@ impl Estimator for VolumePath {
         let slot = &mut stage.slots[lane.slot as usize];
         let mut flight = lane.state.flight.unwrap_or_else(|| start_flight(scene, slot, &lane));
         let distance = vertex.surface.map_or(f32::INFINITY, |si| si.p.distance(ray.origin));
-        if let Some(id) = lane.state.medium {
-            let medium = scene.medium(id);
-            let at = medium.at(&slot.lambda);
-            slot.l += lane.beta * at.emission(distance);
-            let segment = Segment::of(ray, distance);
-            if let Some(phase) = medium.phase {
-                self.look_along(
-                    stage,
-                    &Passage {
-                        lane: &lane,
-                        flight,
-                        at: &at,
-                        phase,
-                        segment,
-                        numbers,
-                        time: ray.time,
-                    },
-                );
-            }
-            match (flight.fly(medium, &at, distance, numbers.connections), medium.phase) {
-                (Arrival::Collision(collision), Some(phase)) => {
-                    lane.beta *= collision.factor;
-                    let encounter = Encounter {
-                        segment,
-                        collision,
-                        phase,
-                    };
-                    let event = Event {
-                        lane: &lane,
-                        flight,
-                        by: Scatterer::Medium(&encounter),
-                        numbers,
-                        time: ray.time,
-                        cone: lane.cone.after(collision.t),
-                    };
-                    return self.scatter(stage, &event);
-                }
-                (Arrival::Through(factor) | Arrival::Collision(Collision { factor, .. }), _) => lane.beta *= factor,
-            }
-            if lane.beta.is_black() {
-                return;
-            }
+        let segment = Segment::of(ray, distance);
+        if let Some(encounter) = self.cross(stage, &mut lane, &mut flight, &segment, &vertex) {
+            let event = Event {
+                lane: &lane,
+                flight,
+                by: Scatterer::Medium(&encounter),
+                numbers,
+                time: ray.time,
+                cone: lane.cone.after(encounter.collision.t),
+            };
+            return self.scatter(stage, &event);
+        }
+        if lane.beta.is_black() {
+            return;
         }
         let (slot, direct) = (&mut stage.slots[lane.slot as usize], self.0.direct_light());
         let origin = lane.state.origin.after(flight.chances.passed());
@@ -188,6 +160,48 @@ impl Estimator for VolumePath {
 }
 
 impl VolumePath {
+    /// Flies along a segment, through a medium if there is one: adds what that emits and what it scatters of the light of points, and
+    /// weakens what the path carries. Where it ends, unless that is at the end of the segment.
+    fn cross(
+        &self,
+        stage: &mut VolumeStage<'_, '_>,
+        lane: &mut TravelLane,
+        flight: &mut Flight,
+        segment: &Segment,
+        vertex: &Vertex<'_, Traveller>,
+    ) -> Option<Encounter> {
+        let medium = stage.scene.medium(lane.state.medium?);
+        let slot = &mut stage.slots[lane.slot as usize];
+        let at = medium.at(&slot.lambda);
+        slot.l += lane.beta * at.emission(segment.length);
+        if let Some(phase) = medium.phase {
+            let passage = Passage {
+                lane,
+                flight: *flight,
+                at: &at,
+                phase,
+                segment: *segment,
+                numbers: vertex.numbers,
+                time: vertex.ray.time,
+            };
+            self.look_along(stage, &passage);
+        }
+        match flight.fly(medium, &at, segment.length, vertex.numbers.connections) {
+            Arrival::Through(factor) => {
+                lane.beta *= factor;
+                None
+            }
+            Arrival::Collision(collision) => {
+                lane.beta *= collision.factor;
+                medium.phase.map(|phase| Encounter {
+                    segment: *segment,
+                    collision,
+                    phase,
+                })
+            }
+        }
+    }
+
     /// Goes on from a scattering event, once or, where the path splits, several times.
     fn scatter(&self, stage: &mut VolumeStage<'_, '_>, event: &Event<'_>) {
         if self.0.max_depth == Some(stage.depth) {
