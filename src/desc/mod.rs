@@ -20,6 +20,7 @@
 pub mod bare;
 mod bytes;
 mod camera;
+mod degenerate;
 mod film;
 mod images;
 mod integrator;
@@ -206,7 +207,7 @@ const EXTENSIONS: &str = ".pbrt (pbrt-v4), .xml (Mitsuba 3), .ply or .obj; .pbrt
 /// [`Error::Usage`] if its extension is not known.
 pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
+    let mut scene = if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
     } else if name.ends_with(".xml") {
         mitsuba::load(path, options)
@@ -217,5 +218,7 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
             "{}: not a scene file that Lucerna reads (expected the extension {EXTENSIONS})",
             path.display()
         )))
-    }
+    }?;
+    degenerate::warn(&mut scene);
+    Ok(scene)
 }
