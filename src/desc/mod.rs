@@ -59,7 +59,7 @@ pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
     PrincipledDesc, ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
-pub use medium::{MediumDesc, MediumInterfaceDesc};
+pub use medium::{CoefficientsDesc, MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{
     CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,

@@ -224,7 +224,36 @@ def integrators():
                            camera=CAMERA.format(film=film(), sampler=SAMPLER))
 
 
+def media():
+    def volume(content, name="interior", kind="hg", g=0.5):
+        phase = f'<phase type="{kind}">{number("g", g) if kind == "hg" else ""}</phase>'
+        return f'<medium type="homogeneous" name="{name}">{content}{phase}</medium>'
+
+    def through(content, camera=None):
+        integrator = '<integrator type="volpathmis"><integer name="max_depth" value="16"/></integrator>'
+        return scene(content, camera=camera, integrator=integrator)
+
+    colors = rgb("sigma_t", "0.5, 0.8, 0.3") + rgb("albedo", "0.9, 0.6, 0.8")
+    inner = '<shape type="sphere"><float name="radius" value="0.5"/></shape>'
+    turned = '<transform name="to_world"><rotate y="1" angle="30"/></transform>'
+    plain = number("sigma_t", 0.8) + number("albedo", 0.9)
+    yield "box-isotropic", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(plain, kind="isotropic")}</shape>{inner}')
+    for g in (-0.6, 0.3, 0.8):
+        yield f"box-hg-{g}", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(plain, g=g)}</shape>{inner}')
+    yield "box-colors", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(colors + number("scale", 2))}</shape>{inner}')
+    dark = '<spectrum name="sigma_t" value="400:0.3, 550:2, 700:0.5"/>' + number("albedo", 0)
+    yield "glass-absorbing", through(f'<shape type="sphere">{bsdf("dielectric")}{volume(rgb("sigma_t", "0.1, 0.5, 0.9") + number("albedo", 0) + number("scale", 2))}</shape>')
+    yield "glass-absorbing-samples", through(f'<shape type="sphere">{bsdf("dielectric")}{volume(dark)}</shape>')
+    yield "glass-cloudy", through(f'<shape type="sphere">{bsdf("roughdielectric", number("alpha", 0.2))}{volume(plain)}</shape>')
+    fog = volume(number("sigma_t", 0.1) + number("albedo", 0.8), "fog")
+    hole = f'<shape type="sphere">{bsdf("null")}{fog.replace(chr(34) + "fog" + chr(34), chr(34) + "exterior" + chr(34))}</shape>'
+    around = CAMERA.format(film=film(), sampler=SAMPLER).replace("</sensor>", fog + "</sensor>")
+    yield "camera-in-fog", through('<shape type="sphere"/>', around)
+    yield "camera-in-fog-hole", through(hole + inner, around)
+    yield "path-sees-none", scene(f'<shape type="sphere">{bsdf("dielectric")}{volume(plain)}</shape>')
+
+
 def all_scenes():
-    for group in (bsdfs, emitters, textures, shapes, sensors, integrators):
+    for group in (bsdfs, emitters, textures, shapes, sensors, integrators, media):
         for name, text in group():
             yield f"{group.__name__}/{name}", text

@@ -58,6 +58,16 @@ impl<'g> Loader<'g> {
         surface
     }
 
+    /// The material of what is only a boundary between media.
+    pub fn boundary(&mut self, span: Span) -> MaterialId {
+        let id = match self.boundary {
+            Some(id) => id,
+            None => self.add_material(MaterialKind::Interface, span),
+        };
+        self.boundary = Some(id);
+        id
+    }
+
     /// A bsdf as it is inside a `twosided`, each translated once; `None` for `null`, and for what cannot be translated, which is said.
     pub fn scattering(&mut self, index: ObjectIndex) -> Option<Scattering> {
         if let Some(scattering) = self.scattering.get(&index) {

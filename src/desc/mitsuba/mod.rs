@@ -23,6 +23,7 @@ mod integrator;
 mod ior;
 mod light_image;
 mod loader;
+mod medium;
 mod mesh;
 mod nested;
 mod parameters;

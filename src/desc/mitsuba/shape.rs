@@ -42,7 +42,10 @@ impl<'g> Loader<'g> {
     fn one_shape(&mut self, object: &'g Object) -> Option<ShapeDesc> {
         let mut props = Props::new(object);
         let form = self.form(&mut props);
-        self.refuse_children(&mut props);
+        let media = self.media_of(&mut props);
+        for (_, sensor) in self.children(&mut props, Class::Sensor) {
+            props.unsupported(sensor.span, "a sensor on a shape is not supported", "it is left out");
+        }
         let bsdf = self.child(&mut props, Class::Bsdf);
         let emitter = self.child(&mut props, Class::Emitter);
         props.ignore(&["silhouette_sampling_weight"]);
@@ -51,6 +54,14 @@ impl<'g> Loader<'g> {
         let surface = match bsdf {
             Some((index, _)) => self.surface(index),
             None => Some(self.default_surface(emitter.is_some())),
+        };
+        let media = media.filter(|media| media.interior != media.exterior);
+        let surface = match surface {
+            None if media.is_some() && area_light.is_none() => Some(Surface {
+                material: self.boundary(object.span),
+                alpha: Textured::Value(1.0),
+            }),
+            surface => surface,
         };
         let Some(Surface { material, alpha }) = surface else {
             self.nothing_to_see(object, area_light.as_ref());
@@ -67,7 +78,7 @@ impl<'g> Loader<'g> {
             world_from_object: MotionDesc::fixed(form.world_from_object),
             reverse_orientation: form.reverse_orientation,
             material,
-            media: None,
+            media,
             alpha,
             area_light,
         })
@@ -82,18 +93,8 @@ impl<'g> Loader<'g> {
             let message = "a shape that emits and has the bsdf `null` is not supported";
             self.report().unsupported(object.span, message, "it is left out");
         } else {
-            let message = "this shape is left out: with the bsdf `null` and without media it does nothing";
+            let message = "this shape is left out: with the bsdf `null` and the same on both sides it does nothing";
             self.report().warning(object.span, message);
-        }
-    }
-
-    fn refuse_children(&mut self, props: &mut Props<'g>) {
-        for (_, medium) in self.children(props, Class::Medium) {
-            let message = "participating media are not supported";
-            props.unsupported(medium.span, message, "the shape is without");
-        }
-        for (_, sensor) in self.children(props, Class::Sensor) {
-            props.unsupported(sensor.span, "a sensor on a shape is not supported", "it is left out");
         }
     }
 

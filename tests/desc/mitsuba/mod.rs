@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod files;
+mod media;
 mod mutations;
 mod plugins;
 
