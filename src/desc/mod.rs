@@ -62,7 +62,8 @@ pub use material::{
 pub use medium::{CoefficientsDesc, MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{
-    CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,
+    AttributeDomain, CurveDesc, CurveKindDesc, DisplacementDesc, MeshAttributeDesc, MeshDesc, PatchMeshDesc,
+    QuadricDesc, ShapeDesc, ShapeKind, TubeBasis, TubesDesc,
 };
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,

@@ -284,6 +284,7 @@ impl<'g> Loader<'g> {
             sheen_tint: fraction("sheen_tint", 0.0),
             clearcoat: fraction("clearcoat", 0.0),
             clearcoat_gloss: fraction("clearcoat_gloss", 0.0),
+            flatness: fraction("flatness", 0.0),
             as_in_mitsuba: true,
         };
         desc.base_color = self.color(base, 0.5, span, Use::Albedo);
@@ -299,9 +300,6 @@ impl<'g> Loader<'g> {
             "main_specular_sampling_rate",
             "clearcoat_sampling_rate",
         ]);
-        if let Some(flatness) = props.take("flatness").filter(|p| !Self::is_number(p, 0.0)) {
-            props.unsupported(flatness.span, "`flatness` is not supported", "it is 0");
-        }
         let transmits = desc.spec_trans != Textured::Value(0.0);
         (MaterialKind::Principled(desc), !transmits)
     }

@@ -201,6 +201,8 @@ const SHAPES: &[&str] = &[
     "sphere",
     "disk",
     "cylinder",
+    "linearcurve",
+    "bsplinecurve",
     "obj",
     "ply",
     "serialized",
@@ -208,8 +210,6 @@ const SHAPES: &[&str] = &[
     "instance",
 ];
 const SHAPES_REFUSED: &[&str] = &[
-    "bsplinecurve",
-    "linearcurve",
     "sdfgrid",
     "ellipsoids",
     "ellipsoidsmesh",

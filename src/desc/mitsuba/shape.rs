@@ -72,6 +72,9 @@ impl<'g> Loader<'g> {
             self.report().warning(object.span, message);
         }
         let form = form?;
+        if let Some((index, _)) = bsdf {
+            self.check_attributes(index, object, &form.kind);
+        }
         Some(ShapeDesc {
             span: object.span,
             kind: form.kind,
@@ -111,15 +114,22 @@ impl<'g> Loader<'g> {
                 props.ignore(&["face_normals"]);
                 (mesh(solids::cube()), DAffine3::IDENTITY, flip)
             }
-            "disk" => (mesh(solids::disk()), DAffine3::IDENTITY, flip),
-            "cylinder" => (mesh(solids::cylinder()), cylinder(props), flip),
+            "disk" => (solids::DISK, DAffine3::IDENTITY, flip),
+            "cylinder" => (solids::CYLINDER, cylinder(props), flip),
             "sphere" => {
                 let center = props.vector("center").unwrap_or(DVec3::ZERO);
                 let radius = props.positive("radius", 1.0);
                 (ShapeKind::Sphere { radius }, DAffine3::from_translation(center), flip)
             }
+            "linearcurve" | "bsplinecurve" => {
+                return Some(Form {
+                    kind: self.curves(props, &to_world)?,
+                    world_from_object: DAffine3::IDENTITY,
+                    reverse_orientation: flip,
+                });
+            }
             "obj" | "ply" | "serialized" => {
-                let file = MeshFile::of(props, &self.xml)?;
+                let file = MeshFile::of(props, self.graph, &self.xml)?;
                 match self.meshes.get(&file) {
                     Ok(read) => {
                         let kind = ShapeKind::TriangleMesh(read.mesh);
@@ -205,7 +215,7 @@ fn mesh(mesh: MeshDesc) -> ShapeKind {
     ShapeKind::TriangleMesh(Arc::new(mesh))
 }
 
-/// From the unit cylinder to one from `p0` to `p1`.
+/// From the unit cylinder to one from `p1` to `p0`, which turns v round.
 fn cylinder(props: &mut Props<'_>) -> DAffine3 {
     let p0 = props.vector("p0").unwrap_or(DVec3::ZERO);
     let p1 = props.vector("p1").unwrap_or(DVec3::Z);
@@ -216,6 +226,6 @@ fn cylinder(props: &mut Props<'_>) -> DAffine3 {
         return DAffine3::IDENTITY;
     }
     let turn = DMat3::from_quat(DQuat::from_rotation_arc(DVec3::Z, axis.normalize()));
-    let scale = DMat3::from_diagonal(DVec3::new(radius, radius, axis.length()));
-    DAffine3::from_mat3_translation(turn * scale, p0)
+    let scale = DMat3::from_diagonal(DVec3::new(radius, radius, -axis.length()));
+    DAffine3::from_mat3_translation(turn * scale, p1)
 }

@@ -299,6 +299,7 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         sheen_tint: textured(&kinds::SHEEN_TINT),
         clearcoat: textured(&kinds::CLEARCOAT),
         clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
+        flatness: Textured::Value(0.0),
         as_in_mitsuba: false,
         base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
         eta: if given {

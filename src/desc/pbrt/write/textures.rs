@@ -73,6 +73,7 @@ impl Writer<'_> {
             TextureKind::Dots { .. } => "dots",
             TextureKind::Bilerp { .. } => "bilerp",
             TextureKind::Image(_) => "imagemap",
+            TextureKind::MeshAttribute { .. } => return Err(unwritable("a texture that is an attribute of a mesh")),
             TextureKind::Fbm(_) => "fbm",
             TextureKind::Wrinkled(_) => "wrinkled",
             TextureKind::Windy => "windy",
@@ -124,7 +125,7 @@ impl Writer<'_> {
             }
             TextureKind::Image(map) => self.image_map(e, map)?,
             TextureKind::Fbm(octaves) | TextureKind::Wrinkled(octaves) => put_octaves(e, octaves),
-            TextureKind::Windy => {}
+            TextureKind::Windy | TextureKind::MeshAttribute { .. } => {}
             TextureKind::Marble {
                 octaves,
                 scale,
