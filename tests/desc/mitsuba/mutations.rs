@@ -7,7 +7,7 @@ use lucerna::desc::{ParseOptions, mitsuba};
 use super::super::mutations::{Random, mutate};
 
 const SCENE: &str = r#"<?xml version="1.0"?><!-- all sorts of things -->
-<scene version="3.1.0"><default name="spp" value="16"/><integrator type="path"><integer name="max_depth" value="5"/></integrator>
+<scene version="3.1.0"><default name="spp" value="16"/><integrator type="volpath"><integer name="max_depth" value="5"/></integrator>
 <sensor type="thinlens"><float name="fov" value="40"/><float name="aperture_radius" value="0.1"/><string name="fov_axis" value="smaller"/>
 <transform name="to_world"><lookat origin="0,1,5" target="0, 0, 0" up="0 1 0"/><scale value="2"/><rotate y="1" angle="20"/></transform>
 <film type="hdrfilm"><integer name="width" value="64"/><integer name="crop_width" value="9"/><rfilter type="mitchell"/></film>
@@ -19,7 +19,9 @@ const SCENE: &str = r#"<?xml version="1.0"?><!-- all sorts of things -->
 <shape type="instance"><ref id="g"/><transform name="to_world"><matrix value="1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1"/></transform></shape>
 <shape type="sphere"><point name="center" x="1" y="2" z="3"/><emitter type="area"><spectrum name="radiance" value="400:1, 700:2.5"/></emitter></shape>
 <shape type="cylinder"><ref id="b"/></shape><emitter type="constant"><spectrum type="blackbody" name="radiance"><float name="temperature" value="4000"/></spectrum></emitter>
-</scene>"#;
+<medium type="homogeneous" id="fog"><rgb name="sigma_t" value="1 2 3"/><volume type="constvolume" name="albedo"><float name="value" value="0.5"/></volume>
+<phase type="hg"><float name="g" value="0.4"/></phase></medium><shape type="disk"><bsdf type="null"/><ref id="fog" name="interior"/></shape>
+<shape type="cube"><bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="principled"><float name="flatness" value="1"/></bsdf></bsdf></shape></scene>"#;
 
 #[test]
 fn no_text_makes_the_reader_panic() {
