@@ -219,7 +219,9 @@ fn mitsuba_scenes() {
 
 #[test]
 fn ply_meshes() {
-    survives("ply", 16_000, |file, _| ply::parse(file).map(drop));
+    survives("ply", 16_000, |file, _| {
+        ply::parse(file).and(ply::parse_with_attributes(file)).map(drop)
+    });
 }
 
 #[test]

@@ -97,6 +97,7 @@ impl SceneInfo {
                 Shape::Quadrics(list) => quadrics += list.len() as u64,
                 Shape::Patches(mesh) => patches += mesh.patch_count() as u64,
                 Shape::Curves(curves) => curve_segments += curves.segments().len() as u64,
+                Shape::Tubes(tubes) => curve_segments += tubes.pieces().len() as u64,
             }
         }
         let bounds = scene.bounds();

@@ -224,6 +224,8 @@ pub struct PrincipledDesc {
     pub clearcoat: Textured<f32>,
     /// How smooth it is.
     pub clearcoat_gloss: Textured<f32>,
+    /// From diffuse to what looks like light from under the surface; only as in Mitsuba.
+    pub flatness: Textured<f32>,
     /// Whether its lobes are added up as Mitsuba adds them, which may gain energy and which is not reciprocal.
     pub as_in_mitsuba: bool,
 }

@@ -64,10 +64,11 @@ pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
     PrincipledDesc, ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,
 };
-pub use medium::{MediumDesc, MediumInterfaceDesc};
+pub use medium::{CoefficientsDesc, MediumDesc, MediumInterfaceDesc};
 pub use rgl::{MeasuredDesc, Tensor};
 pub use shape::{
-    CurveDesc, CurveKindDesc, DisplacementDesc, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind,
+    AttributeDomain, CurveDesc, CurveKindDesc, DisplacementDesc, MeshAttributeDesc, MeshDesc, PatchMeshDesc,
+    QuadricDesc, ShapeDesc, ShapeKind, TubeBasis, TubesDesc,
 };
 pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,

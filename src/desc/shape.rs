@@ -64,6 +64,52 @@ pub enum ShapeKind {
     },
     /// A curve with a width.
     Curve(Arc<CurveDesc>),
+    /// Round curves.
+    Tubes(Arc<TubesDesc>),
+}
+
+/// Round curves in object space, with a radius at each control point; seen from outside only. Linear ones are closed by balls, others
+/// are open at their ends.
+#[derive(Clone, Debug)]
+pub struct TubesDesc {
+    /// How points and radii are connected.
+    pub basis: TubeBasis,
+    /// The control points of all curves, one after another.
+    pub points: Vec<Vec3>,
+    /// As many, not negative. The transform moves the points before the radii are laid around them, unless it is that of an instance.
+    pub radii: Vec<f32>,
+    /// How many control points each curve has: [`TubeBasis::least_points`] at least, and together as many as there are.
+    pub counts: Vec<u32>,
+}
+
+/// How the control points of a round curve are connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TubeBasis {
+    /// By straight lines.
+    Linear,
+    /// By a uniform cubic B-spline.
+    CubicBSpline,
+}
+
+impl TubeBasis {
+    /// How many control points a curve has at least.
+    pub fn least_points(self) -> u32 {
+        match self {
+            Self::Linear => 2,
+            Self::CubicBSpline => 4,
+        }
+    }
+}
+
+impl TubesDesc {
+    /// How many segments there are, of all curves.
+    pub fn segment_count(&self) -> usize {
+        let least = self.basis.least_points();
+        self.counts
+            .iter()
+            .map(|count| (count + 1).saturating_sub(least) as usize)
+            .sum()
+    }
 }
 
 /// How the width of a curve lies.
@@ -117,6 +163,8 @@ pub enum QuadricDesc {
         radius: f64,
         /// Of its hole: not negative, less than `radius`.
         inner_radius: f64,
+        /// Whether its texture coordinates are radius and angle, as in Mitsuba: (1 - v, 1 - u) of pbrt's.
+        radial_uv: bool,
     },
 }
 
@@ -159,4 +207,29 @@ pub struct MeshDesc {
     pub uvs: Vec<Vec2>,
     /// Three vertices a triangle, all below `positions.len()`.
     pub indices: Vec<[u32; 3]>,
+    /// Further values, which textures ask for by name ([`TextureKind::MeshAttribute`](super::TextureKind::MeshAttribute)); names are
+    /// distinct.
+    pub attributes: Vec<MeshAttributeDesc>,
+}
+
+/// Values that a mesh has at its vertices or on its triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshAttributeDesc {
+    /// What textures call it.
+    pub name: String,
+    /// What it has values for.
+    pub domain: AttributeDomain,
+    /// Numbers a value: 1, or 3 of a colour in linear sRGB.
+    pub channels: usize,
+    /// As many values as vertices or triangles, one after another; finite.
+    pub values: Vec<f32>,
+}
+
+/// What an attribute of a mesh has values for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeDomain {
+    /// Each vertex; linear between.
+    Vertices,
+    /// Each triangle.
+    Triangles,
 }

@@ -126,6 +126,13 @@ pub enum TextureKind<V> {
     },
     /// An image.
     Image(ImageMapDesc),
+    /// What the mesh that it lies on has under a name ([`MeshAttributeDesc`](super::MeshAttributeDesc)); 0 on shapes that have none.
+    MeshAttribute {
+        /// Of the attribute.
+        name: String,
+        /// Factor of the values.
+        scale: f32,
+    },
     /// Noise: octaves added up. Of numbers only.
     Fbm(OctavesDesc),
     /// The magnitude of noise: octaves added up. Of numbers only.

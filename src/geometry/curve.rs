@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use super::shape::LineHits;
 use super::surface::LocalSurface;
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DQuat, DVec2, DVec3, Vec3};
+use crate::math::{AnimatedTransform, Bounds3, DAffine3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 /// How a curve's width lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -247,6 +247,7 @@ impl CurveSet {
             dpdu: to_world(dpdu),
             dpdv: to_world(dpdv),
             uv: hit.uv.as_vec2(),
+            barycentrics: Vec2::ZERO,
         }
     }
 }

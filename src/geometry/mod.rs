@@ -12,6 +12,7 @@ mod sphere;
 mod surface;
 mod surface_lanes;
 mod triangle;
+mod tube;
 mod world;
 
 pub use cone::RayCone;
@@ -26,6 +27,7 @@ pub use sphere::{Sphere, SphereHits};
 pub use surface::{Hit, SurfaceInteraction};
 pub use surface_lanes::SurfaceLanes;
 pub use triangle::{LEAST_ERROR, triangle_error};
+pub use tube::{TubePiece, TubeSet};
 pub use world::{Geometry, Group, Instance, Opacity, World, WorldBuilder};
 
 macro_rules! index_newtype {

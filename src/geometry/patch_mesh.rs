@@ -183,6 +183,7 @@ impl PatchSurface {
             dpdu: dpds.as_vec3(),
             dpdv: dpdt.as_vec3(),
             uv: self.texture_coordinates(uv),
+            barycentrics: Vec2::ZERO,
         }
     }
 

@@ -19,6 +19,8 @@ pub struct Quadric {
     world_from_object: DAffine3,
     object_from_world: DAffine3,
     flip_normal: bool,
+    /// Whether its texture coordinates are Mitsuba's of a disk.
+    radial_uv: bool,
     /// Diagonal of its box.
     size: f64,
 }
@@ -98,6 +100,7 @@ impl Quadric {
             world_from_object,
             object_from_world,
             flip_normal: false,
+            radial_uv: false,
             size: 0.0,
         };
         quadric.size = f64::from(quadric.bounds().extent().length());
@@ -111,10 +114,18 @@ impl Quadric {
         self
     }
 
+    /// With (1 - v, 1 - u) as its texture coordinates: of a disk the distance from the middle, and once around the other way.
+    #[must_use]
+    pub fn with_radial_uv(mut self, radial: bool) -> Self {
+        self.radial_uv = radial;
+        self
+    }
+
     /// This one, placed by another transform after its own; `None` if the product is singular.
     pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
         let placed = Self::new(self.kind, self.phi_max, *transform * self.world_from_object)?;
-        Some(placed.with_flipped_normal(self.flip_normal))
+        let placed = placed.with_flipped_normal(self.flip_normal);
+        Some(placed.with_radial_uv(self.radial_uv))
     }
 
     /// Which surface it is a part of.
@@ -226,9 +237,13 @@ impl Quadric {
                 radius, inner_radius, ..
             } => (radius - p.truncate().length()) / (radius - inner_radius),
         };
-        DVec2::new(phi / self.phi_max, v)
-            .clamp(DVec2::ZERO, DVec2::ONE)
-            .as_vec2()
+        let uv = DVec2::new(phi / self.phi_max, v).clamp(DVec2::ZERO, DVec2::ONE);
+        let uv = if self.radial_uv {
+            DVec2::new(1.0 - uv.y, 1.0 - uv.x)
+        } else {
+            uv
+        };
+        uv.as_vec2()
     }
 
     /// The derivatives of a point, object space, by its texture coordinates.
@@ -246,7 +261,7 @@ impl Quadric {
                 radius, inner_radius, ..
             } => (azimuth * (inner_radius - radius)).extend(0.0),
         };
-        [dpdu, dpdv]
+        if self.radial_uv { [-dpdv, -dpdu] } else { [dpdu, dpdv] }
     }
 
     /// The surface where a ray meets it at `tnear` or behind, or nearly does.
@@ -272,6 +287,7 @@ impl Quadric {
             dpdu,
             dpdv,
             uv: self.uv(angle(p), p),
+            barycentrics: Vec2::ZERO,
         }
     }
 

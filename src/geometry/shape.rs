@@ -1,6 +1,6 @@
 //! What a geometry is made of, and what all kinds of shapes can say about their primitives.
 
-use super::{CurveSet, PatchMesh, Quadric, Sphere, TriangleMesh};
+use super::{CurveSet, PatchMesh, Quadric, Sphere, TriangleMesh, TubeSet};
 use crate::math::{Bounds3, DVec3};
 
 /// What a geometry is made of.
@@ -16,6 +16,8 @@ pub enum Shape {
     Patches(PatchMesh),
     /// Curves; primitive ids are those of parts of their segments.
     Curves(CurveSet),
+    /// Round curves; primitive ids are those of their pieces.
+    Tubes(TubeSet),
 }
 
 /// Where the line of a ray meets a primitive, in units of the ray's direction: at most two places, the nearer first. Of a curve only
@@ -62,6 +64,7 @@ impl Shape {
             Self::Quadrics(quadrics) => quadrics.len(),
             Self::Patches(mesh) => mesh.patch_count(),
             Self::Curves(curves) => curves.primitive_count(),
+            Self::Tubes(tubes) => tubes.pieces().len(),
         }
     }
 
@@ -86,6 +89,7 @@ impl Shape {
             Self::Quadrics(quadrics) => quadrics[primitive].bounds(),
             Self::Patches(mesh) => mesh.patch(primitive).bounds(),
             Self::Curves(curves) => curves.primitive_bounds(primitive),
+            Self::Tubes(tubes) => tubes.piece_bounds(primitive),
         }
     }
 
@@ -115,7 +119,8 @@ impl Shape {
             Self::Curves(curves) if primitive < curves.primitive_count() => {
                 curves.intersect(primitive, origin, direction)
             }
-            Self::Patches(_) | Self::Curves(_) => LineHits::NONE,
+            Self::Tubes(tubes) if primitive < tubes.pieces().len() => tubes.intersect(primitive, origin, direction),
+            Self::Patches(_) | Self::Curves(_) | Self::Tubes(_) => LineHits::NONE,
         }
     }
 
@@ -127,6 +132,7 @@ impl Shape {
             Self::Quadrics(quadrics) => size_of_val(quadrics.as_slice()),
             Self::Patches(mesh) => mesh.memory(),
             Self::Curves(curves) => curves.memory(),
+            Self::Tubes(tubes) => tubes.memory(),
         }
     }
 }

@@ -45,6 +45,8 @@ pub struct SurfaceInteraction {
     pub dpdv: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Of a triangle: the barycentric coordinates of its second and its third vertex; of other shapes zero.
+    pub barycentrics: Vec2,
     /// Back along the ray, of the length of its direction.
     pub wo: Vec3,
     /// Width of the ray's [cone](super::RayCone) at the point: how much of the surface one sample stands for, across the ray. 0, as
@@ -139,6 +141,7 @@ fn local_surface(shape: &Shape, origin: DVec3, direction: DVec3, ray: &Ray, hit:
         Shape::Spheres(spheres) => sphere_surface(&spheres[primitive], origin, direction, tnear),
         Shape::Quadrics(quadrics) => quadrics[primitive].surface(origin, direction, tnear),
         Shape::Curves(curves) => curves.surface(primitive, origin, direction, tnear),
+        Shape::Tubes(tubes) => tubes.surface(primitive, origin, direction),
         Shape::Patches(mesh) => mesh.surface(primitive).at(origin, direction, tnear),
     }
 }
@@ -155,6 +158,8 @@ pub(super) struct LocalSurface {
     pub dpdu: Vec3,
     pub dpdv: Vec3,
     pub uv: Vec2,
+    /// As [`SurfaceInteraction::barycentrics`].
+    pub barycentrics: Vec2,
 }
 
 fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
@@ -167,6 +172,7 @@ fn finish(local: &LocalSurface, ray: &Ray, hit: Hit) -> SurfaceInteraction {
         dpdu: local.dpdu,
         dpdv: local.dpdv,
         uv: local.uv,
+        barycentrics: local.barycentrics,
         wo: -ray.direction,
         footprint: 0.0,
         time: ray.time,
@@ -200,6 +206,7 @@ fn to_world(
         dpdu: world_from_object.transform_vector3(local.dpdu.as_dvec3()).as_vec3(),
         dpdv: world_from_object.transform_vector3(local.dpdv.as_dvec3()).as_vec3(),
         uv: local.uv,
+        barycentrics: local.barycentrics,
     }
 }
 
@@ -216,6 +223,7 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
         dpdu: attributes.dpdu,
         dpdv: attributes.dpdv,
         uv: attributes.uv,
+        barycentrics: barycentrics.into(),
     }
 }
 
@@ -255,5 +263,6 @@ fn sphere_surface(sphere: &Sphere, origin: DVec3, direction: DVec3, tnear: f64) 
         dpdu: dpdu.as_vec3(),
         dpdv: dpdv.as_vec3(),
         uv,
+        barycentrics: Vec2::ZERO,
     }
 }

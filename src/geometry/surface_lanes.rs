@@ -42,6 +42,7 @@ struct Surfaces {
     dpdu: [Lanes; 3],
     dpdv: [Lanes; 3],
     uv: [Lanes; 2],
+    barycentrics: [Lanes; 2],
 }
 
 impl SurfaceLanes {
@@ -79,6 +80,7 @@ impl SurfaceLanes {
             dpdu: of(&surfaces.dpdu, lane),
             dpdv: of(&surfaces.dpdv, lane),
             uv: Vec2::new(surfaces.uv[0][lane], surfaces.uv[1][lane]),
+            barycentrics: Vec2::new(surfaces.barycentrics[0][lane], surfaces.barycentrics[1][lane]),
             wo: -ray.direction,
             footprint: 0.0,
             time: ray.time,
@@ -152,6 +154,7 @@ impl Kernel for Compute<'_> {
                 ns[i] = if has_ns { given } else { ng };
             }
             [surfaces.uv[0][i], surfaces.uv[1][i]] = attributes.uv.to_array();
+            [surfaces.barycentrics[0][i], surfaces.barycentrics[1][i]] = barycentrics;
         }
         surfaces
     }

@@ -188,11 +188,19 @@ impl Burley {
         let cos_d = m.dot(wi);
         let retro = 2.0 * self.p.roughness * cos_d * cos_d;
         let lambert = (1.0 - 0.5 * o) * (1.0 - 0.5 * i);
-        let shape = lambert + retro * (o + i + o * i * (retro - 1.0));
+        let rough = lambert + retro * (o + i + o * i * (retro - 1.0));
+        let shape = rough + (self.flat(wo.z, wi.z, retro) - rough) * self.p.flatness;
         let cloth = SampledSpectrum::ONE.lerp(self.hue, self.p.sheen_tint);
         let sheen = if self.opaque() > 0.0 { self.p.sheen } else { 0.0 };
         self.p.base * (self.opaque() * FRAC_1_PI * shape)
             + cloth * (sheen * (1.0 - self.p.metallic) * schlick_weight(cos_d.abs()))
+    }
+
+    /// Like diffuse light that went some way under the surface (Hanrahan and Krueger 1993, nearly).
+    fn flat(&self, cos_o: f32, cos_i: f32, retro: f32) -> f32 {
+        let shadow = |cos: f32| 1.0 + (0.5 * retro - 1.0) * schlick_weight(cos);
+        let under = shadow(cos_o) * shadow(cos_i);
+        1.25 * (under * (1.0 / (cos_o.abs() + cos_i.abs()) - 0.5) + 0.5)
     }
 
     fn coat_alpha(&self) -> f32 {
@@ -267,6 +275,7 @@ mod tests {
             sheen_tint: 0.0,
             clearcoat: 0.0,
             clearcoat_gloss: 0.0,
+            flatness: 0.0,
         };
         change(&mut p);
         Burley::new(p, 0.45)
@@ -281,6 +290,7 @@ mod tests {
             burley(|p| (p.clearcoat, p.clearcoat_gloss) = (1.0, 0.3)),
             burley(|p| (p.sheen, p.sheen_tint, p.spec_tint) = (1.0, 0.5, 0.7)),
             burley(|p| (p.spec_trans, p.anisotropic) = (0.7, 0.6)),
+            burley(|p| p.flatness = 0.8),
         ];
         for (number, lobe) in cases.iter().enumerate() {
             for wo in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.5, 0.3, -0.812_404)] {

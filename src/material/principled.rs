@@ -33,6 +33,7 @@ pub struct PrincipledParameters {
     pub sheen_tint: f32,
     pub clearcoat: f32,
     pub clearcoat_gloss: f32,
+    pub flatness: f32,
 }
 
 /// What its eta determines, to be shared by all points of a surface.

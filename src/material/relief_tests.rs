@@ -58,6 +58,7 @@ fn plane() -> SurfaceInteraction {
         dpdu: Vec3::X * 2.0,
         dpdv: Vec3::Y * 3.0,
         uv: Vec2::new(0.15, 0.2),
+        barycentrics: Vec2::ZERO,
         wo: Vec3::Z,
         footprint: 0.0,
         time: 0.0,

@@ -135,6 +135,7 @@ pub struct PrincipledMaterial {
     pub sheen_tint: FloatTexture,
     pub clearcoat: FloatTexture,
     pub clearcoat_gloss: FloatTexture,
+    pub flatness: FloatTexture,
     pub as_in_mitsuba: bool,
     pub tables: PrincipledTables,
 }
@@ -425,6 +426,7 @@ impl PrincipledMaterial {
             sheen_tint: unit(&self.sheen_tint),
             clearcoat: unit(&self.clearcoat),
             clearcoat_gloss: unit(&self.clearcoat_gloss),
+            flatness: unit(&self.flatness),
         }
     }
 }

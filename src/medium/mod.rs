@@ -24,22 +24,60 @@ impl MediumId {
 /// A medium that is the same everywhere.
 #[derive(Clone, Debug)]
 pub struct HomogeneousMedium {
-    /// Of absorption.
-    pub sigma_a: CompiledSpectrum,
-    /// Of scattering.
-    pub sigma_s: CompiledSpectrum,
+    /// What it takes from light.
+    pub extinction: Extinction,
     /// The radiance that an opaque amount of it emits, were it not to scatter: emission along a ray is `sigma_a` times this.
     pub le: Option<CompiledSpectrum>,
     /// Where light is scattered to; none if it is only absorbed.
     pub phase: Option<HenyeyGreenstein>,
 }
 
+/// The two coefficients of a medium.
+#[derive(Clone, Debug)]
+pub enum Extinction {
+    /// Each by itself.
+    Parts {
+        /// Of absorption.
+        sigma_a: CompiledSpectrum,
+        /// Of scattering.
+        sigma_s: CompiledSpectrum,
+    },
+    /// Their sum, and how it is shared out.
+    Whole {
+        /// Of extinction.
+        sigma_t: CompiledSpectrum,
+        /// The part of scattering, in [0, 1].
+        albedo: CompiledSpectrum,
+    },
+}
+
+impl Extinction {
+    /// Of absorption and of scattering, at the wavelengths of a path.
+    #[inline]
+    fn sample(&self, lambda: &Wavelengths) -> [SampledSpectrum; 2] {
+        match self {
+            Self::Parts { sigma_a, sigma_s } => [sigma_a.sample(lambda), sigma_s.sample(lambda)],
+            Self::Whole { sigma_t, albedo } => {
+                let (sigma_t, albedo) = (sigma_t.sample(lambda), albedo.sample(lambda));
+                [sigma_t * albedo.map(|a| 1.0 - a), sigma_t * albedo]
+            }
+        }
+    }
+
+    /// Whether there is scattering at any wavelength.
+    pub fn scatters(&self) -> bool {
+        match self {
+            Self::Parts { sigma_s, .. } => !sigma_s.is_black(),
+            Self::Whole { sigma_t, albedo } => !sigma_t.is_black() && !albedo.is_black(),
+        }
+    }
+}
+
 impl HomogeneousMedium {
     /// What it does at the wavelengths of a path.
     #[inline]
     pub fn at(&self, lambda: &Wavelengths) -> Coefficients {
-        let sigma_a = self.sigma_a.sample(lambda);
-        let sigma_s = self.sigma_s.sample(lambda);
+        let [sigma_a, sigma_s] = self.extinction.sample(lambda);
         Coefficients {
             sigma_a,
             sigma_s,
@@ -86,8 +124,10 @@ mod tests {
     fn medium(sigma_a: f32, sigma_s: f32, le: f32) -> HomogeneousMedium {
         let spectrum = |value| Spectrum::constant(value).compile(ColorMode::Spectral, SpectrumRole::Reflectance);
         HomogeneousMedium {
-            sigma_a: spectrum(sigma_a),
-            sigma_s: spectrum(sigma_s),
+            extinction: Extinction::Parts {
+                sigma_a: spectrum(sigma_a),
+                sigma_s: spectrum(sigma_s),
+            },
             le: Some(spectrum(le)),
             phase: Some(HenyeyGreenstein { g: 0.0 }),
         }
@@ -104,6 +144,18 @@ mod tests {
             // Thin: the digits of 1 - exp(-x) are kept.
             approx::assert_relative_eq!(at.emission(1e-9).0[lane], 1.5e-9, max_relative = 1e-6);
         }
+    }
+
+    #[test]
+    fn the_albedo_is_the_part_that_is_scattered() {
+        let spectrum = |value| Spectrum::constant(value).compile(ColorMode::Spectral, SpectrumRole::Reflectance);
+        let whole = |sigma_t, albedo| Extinction::Whole {
+            sigma_t: spectrum(sigma_t),
+            albedo: spectrum(albedo),
+        };
+        let lambda = Wavelengths::sample_visible(0.3);
+        assert_eq!(whole(2.0, 0.75).sample(&lambda).map(|s| s.0), [[0.5; 4], [1.5; 4]]);
+        assert!(whole(2.0, 0.75).scatters() && !whole(2.0, 0.0).scatters() && !whole(0.0, 1.0).scatters());
     }
 
     #[test]

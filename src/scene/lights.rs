@@ -198,8 +198,8 @@ impl LightBuilder {
         motion: Option<&AnimatedTransform>,
         alpha: &FloatTexture,
     ) -> Result<Vec<Option<LightId>>, String> {
-        if let Shape::Curves(_) = &geometry.shape {
-            return Err("curves cannot be lights, as in pbrt".to_owned());
+        if let Shape::Curves(_) | Shape::Tubes(_) = &geometry.shape {
+            return Err("curves cannot be lights, as in pbrt and Mitsuba".to_owned());
         }
         let image = desc
             .image
@@ -298,7 +298,7 @@ fn emitter(
             };
             Some((light?, Coordinates::Own))
         }
-        Shape::Curves(_) => None,
+        Shape::Curves(_) | Shape::Tubes(_) => None,
     }
 }
 

@@ -193,6 +193,7 @@ fn principled(desc: &PrincipledDesc, textures: &mut TextureCompiler<'_>) -> Prin
         sheen_tint: textures.float(&desc.sheen_tint),
         clearcoat: textures.float(&desc.clearcoat),
         clearcoat_gloss: textures.float(&desc.clearcoat_gloss),
+        flatness: textures.float(&desc.flatness),
         as_in_mitsuba: desc.as_in_mitsuba,
         tables: PrincipledTables::new(desc.eta),
     }

@@ -1,8 +1,8 @@
 //! Media as described to media as evaluated.
 
 use super::spectra::SpectrumCompiler;
-use crate::desc::{self, MediumDesc, MediumInterfaceDesc};
-use crate::medium::{HenyeyGreenstein, HomogeneousMedium, MediumId};
+use crate::desc::{self, CoefficientsDesc, MediumDesc, MediumInterfaceDesc};
+use crate::medium::{Extinction, HenyeyGreenstein, HomogeneousMedium, MediumId};
 
 /// What is on the two sides of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +27,20 @@ pub(super) fn interface(desc: &MediumInterfaceDesc) -> MediumInterface {
 
 pub(super) fn compile(desc: &MediumDesc, spectra: SpectrumCompiler) -> HomogeneousMedium {
     let scale = desc.scale as f32;
-    let sigma_s = spectra.unbounded(&desc.sigma_s).scaled(scale);
+    let coefficient = |sigma| spectra.unbounded(sigma).scaled(scale);
+    let extinction = match &desc.coefficients {
+        CoefficientsDesc::Parts { sigma_a, sigma_s } => Extinction::Parts {
+            sigma_a: coefficient(sigma_a),
+            sigma_s: coefficient(sigma_s),
+        },
+        CoefficientsDesc::Whole { sigma_t, albedo } => Extinction::Whole {
+            sigma_t: coefficient(sigma_t),
+            albedo: spectra.unbounded(albedo),
+        },
+    };
     HomogeneousMedium {
-        sigma_a: spectra.unbounded(&desc.sigma_a).scaled(scale),
-        phase: (!sigma_s.is_black()).then_some(HenyeyGreenstein { g: desc.g as f32 }),
-        sigma_s,
+        phase: extinction.scatters().then_some(HenyeyGreenstein { g: desc.g as f32 }),
+        extinction,
         le: desc
             .le
             .as_ref()

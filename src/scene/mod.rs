@@ -1,6 +1,7 @@
 //! A scene ready to be rendered: what rays can hit, what it is made of, what emits. Built from a description, with one backend; it
 //! outlives renders and serves many [`View`]s.
 
+mod attributes;
 mod build;
 mod cutouts;
 mod lights;
@@ -10,6 +11,7 @@ mod shapes;
 mod spectra;
 mod tessellate;
 mod textures;
+mod tubes;
 mod view;
 
 use std::sync::Arc;

@@ -2,6 +2,7 @@
 
 use super::tessellate::{displaced, subdivided};
 use super::textures::TextureCompiler;
+use super::tubes::tubes;
 use crate::desc::{CurveDesc, CurveKindDesc, MeshDesc, MotionDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind};
 use crate::geometry::{
     CurveKind, CurveSegment, CurveSet, Geometry, PatchMesh, Quadric, QuadricKind, Shape, Sphere, TriangleMesh,
@@ -44,6 +45,10 @@ fn geometry(shape: &ShapeDesc, transform: &DAffine3, textures: &mut TextureCompi
             let curves = curve_in_space(curve, transform).ok_or("the curve is too large")?;
             Ok(Shape::Curves(curves.with_flipped_normal(reverse)))
         }
+        ShapeKind::Tubes(curves) => {
+            let tubes = tubes(curves, transform).ok_or("the curves are too large")?;
+            Ok(Shape::Tubes(tubes.with_flipped_normal(reverse)))
+        }
         ShapeKind::BilinearMesh(mesh) => patches_in_space(mesh, transform, reverse),
         ShapeKind::Sphere { radius } => {
             let sphere = Sphere::new(*radius, *transform).ok_or("the sphere has no extent")?;
@@ -52,7 +57,10 @@ fn geometry(shape: &ShapeDesc, transform: &DAffine3, textures: &mut TextureCompi
         ShapeKind::Quadric { surface, phi_max } => {
             let quadric = Quadric::new(kind_of(surface), phi_max.to_radians(), *transform);
             let quadric = quadric.ok_or("the shape has no extent")?;
-            Ok(Shape::Quadrics(vec![quadric.with_flipped_normal(reverse)]))
+            let radial = matches!(surface, QuadricDesc::Disk { radial_uv: true, .. });
+            Ok(Shape::Quadrics(vec![
+                quadric.with_flipped_normal(reverse).with_radial_uv(radial),
+            ]))
         }
     }
 }
@@ -82,6 +90,7 @@ fn kind_of(surface: &QuadricDesc) -> QuadricKind {
             height,
             radius,
             inner_radius,
+            radial_uv: _,
         } => QuadricKind::Disk {
             height,
             radius,

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::attributes::{self, AttributeTables};
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
     ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, ReliefDesc,
@@ -14,8 +15,8 @@ use crate::material::{Distribution, ReliefMap, Roughness};
 use crate::math::DAffine3;
 use crate::spectrum::{ColorSpace, CompiledSpectrum, RgbKind, RgbSampler};
 use crate::texture::{
-    Bilerp, Blend, BlendWeight, Filter, FloatTexture, ImageTexture, Mapping2, Marble, MipMap, NoiseKind, NoiseTexture,
-    SpectrumTexture, TextureSpace, Wrap,
+    AttributeTexture, Bilerp, Blend, BlendWeight, Filter, FloatTexture, ImageTexture, Mapping2, Marble, MipMap,
+    NoiseKind, NoiseTexture, SpectrumTexture, TextureSpace, Wrap,
 };
 
 /// What the spectra of a texture are, as pbrt-v4 tells them apart.
@@ -27,25 +28,39 @@ pub(super) enum SpectrumUse {
     Unbounded,
 }
 
+impl SpectrumUse {
+    /// How colours become such spectra.
+    fn of_rgb(self) -> RgbKind {
+        match self {
+            Self::Albedo => RgbKind::Albedo,
+            Self::Unbounded => RgbKind::Unbounded,
+        }
+    }
+}
+
 /// Makes textures ready for rendering, each once for each use.
 pub(super) struct TextureCompiler<'a> {
+    desc: &'a SceneDesc,
     textures: &'a [TextureDesc],
     images: &'a [ImageDesc],
     pub spectra: SpectrumCompiler,
     floats: HashMap<TextureId, FloatTexture>,
     of_spectra: HashMap<(TextureId, SpectrumUse), SpectrumTexture>,
     maps: HashMap<(ImageId, Wrap, bool), Arc<MipMap>>,
+    attributes: HashMap<String, AttributeTables>,
 }
 
 impl<'a> TextureCompiler<'a> {
     pub fn new(desc: &'a SceneDesc, spectra: SpectrumCompiler) -> Self {
         Self {
+            desc,
             textures: &desc.textures,
             images: &desc.images,
             spectra,
             floats: HashMap::new(),
             of_spectra: HashMap::new(),
             maps: HashMap::new(),
+            attributes: HashMap::new(),
         }
     }
 
@@ -188,6 +203,7 @@ impl<'a> TextureCompiler<'a> {
                 Some(image) => FloatTexture::Image(Arc::new(image)),
                 None => FloatTexture::Constant(1.0),
             },
+            TextureKind::MeshAttribute { name, scale } => FloatTexture::Attribute(self.attribute(name, *scale)),
             TextureKind::Fbm(desc) => noise(NoiseKind::Fbm {
                 octaves: desc.octaves,
                 roughness: desc.roughness,
@@ -227,15 +243,18 @@ impl<'a> TextureCompiler<'a> {
                 corners: corners.each_ref().map(|corner| self.compile(corner, usage)),
             })),
             TextureKind::Image(desc) => {
-                let kind = match usage {
-                    SpectrumUse::Albedo => RgbKind::Albedo,
-                    SpectrumUse::Unbounded => RgbKind::Unbounded,
-                };
-                let rgb = rgb(kind, color_space_of(&self.images[desc.image.0 as usize].image));
+                let rgb = rgb(
+                    usage.of_rgb(),
+                    color_space_of(&self.images[desc.image.0 as usize].image),
+                );
                 match self.image(desc, space, false) {
                     Some(image) => SpectrumTexture::Image(Arc::new(image), rgb),
                     None => self.compile(&white(span), usage).into(),
                 }
+            }
+            TextureKind::MeshAttribute { name, scale } => {
+                let rgb = rgb(usage.of_rgb(), ColorSpace::Srgb);
+                SpectrumTexture::Attribute(self.attribute(name, *scale), rgb)
             }
             TextureKind::Marble {
                 octaves,
@@ -254,6 +273,14 @@ impl<'a> TextureCompiler<'a> {
             // Those between two others are not made here, and the rest is of numbers only.
             _ => self.compile(&white(span), usage).into(),
         }
+    }
+
+    /// An attribute of meshes, its tables made once.
+    fn attribute(&mut self, name: &str, scale: f32) -> AttributeTexture {
+        let desc = self.desc;
+        let tables = self.attributes.entry(name.to_owned());
+        let tables = tables.or_insert_with(|| attributes::tables(desc, name)).clone();
+        AttributeTexture { tables, scale }
     }
 
     /// An image at all scales, made once. `None` if it has no colour, which the reader has seen to.

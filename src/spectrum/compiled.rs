@@ -93,8 +93,8 @@ impl Spectrum {
     ///   light that is scaled by 1 / photometric() has the lanes (r, g, b), and the luminance 1 where it is any other light.
     /// - [`SpectrumRole::Ior`]: the value at 587.6 nm, in all four lanes.
     ///
-    /// Colours outside the gamut of sRGB lose what is negative in them, and a reflectance what exceeds the spectrum's
-    /// largest value.
+    /// Colours outside the gamut of sRGB lose what is negative in them, and a reflectance what exceeds 1 or, if that is more, the
+    /// spectrum's largest value.
     pub fn compile(&self, mode: ColorMode, role: SpectrumRole) -> CompiledSpectrum {
         let form = match mode {
             ColorMode::Spectral => self.spectral_form(),
@@ -134,7 +134,7 @@ impl Spectrum {
                 let d65 = named::d65();
                 let xyz = cie::integrate_xyz(|nm| self.value(nm) * d65.at(nm));
                 let white = cie::integrate_y(|nm| d65.at(nm));
-                let largest = self.max_value();
+                let largest = self.max_value().max(1.0);
                 lanes(cie::xyz_to_srgb(xyz).map(|c| ((c / white) as f32).min(largest).max(0.0)))
             }
             (SpectrumRole::Emission, Kind::Rgb(rgb)) if rgb.illuminant && rgb.space == ColorSpace::Srgb => {
@@ -253,6 +253,12 @@ mod tests {
         let lanes = compile(&Spectrum::tabulated(table, Outside::Constant));
         for (a, b) in lanes.into_iter().zip([0.7, 0.2, 0.1, 0.0]) {
             assert!((a - b).abs() < 2e-6, "{lanes:?}");
+        }
+        // Red may be more than the spectrum is anywhere: its primary is not that narrow. By Mitsuba 3's tables of x, y, z and D65.
+        let samples = vec![(400.0, 0.1), (500.0, 0.2), (600.0, 0.8), (700.0, 0.6)];
+        let lanes = compile(&Spectrum::tabulated(samples, Outside::Constant));
+        for (a, b) in lanes.into_iter().zip([0.8987, 0.4513, 0.1069, 0.0]) {
+            assert!((a - b).abs() < 1e-3, "{lanes:?}");
         }
     }
 

@@ -101,7 +101,7 @@ mod tests {
                             };
                             let (found, expected) = (sampler.sample(rgb, &lambda), compiled.sample(&lambda));
                             for (a, b) in found.0.into_iter().zip(expected.0) {
-                                // In rgb mode a constant has no component beyond its spectrum's largest value.
+                                // In rgb mode a constant has no component beyond 1 or its spectrum's largest value.
                                 let bound = if mode == ColorMode::Rgb { 1e-2 } else { 5e-3 };
                                 assert!(
                                     (a - b).abs() < bound,

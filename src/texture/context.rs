@@ -1,6 +1,6 @@
 //! What a texture is asked about: a point of a surface, and how much around it one sample stands for.
 
-use crate::geometry::SurfaceInteraction;
+use crate::geometry::{GeometryId, PrimitiveId, SurfaceInteraction};
 use crate::math::{Vec2, Vec3};
 
 /// A point of a surface and its neighbourhood, world space. `x` and `y` are the two axes of the footprint: how far the point moves,
@@ -21,6 +21,19 @@ pub struct TextureContext {
     pub duvdx: Vec2,
     /// Change of `uv` along the short axis.
     pub duvdy: Vec2,
+    /// Which primitive it is of, for textures that ask a mesh; `None` if that is not known.
+    pub place: Option<MeshPlace>,
+}
+
+/// A point of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshPlace {
+    /// The mesh.
+    pub geometry: GeometryId,
+    /// The triangle.
+    pub primitive: PrimitiveId,
+    /// See [`SurfaceInteraction::barycentrics`].
+    pub barycentrics: Vec2,
 }
 
 /// The least cosine that a footprint is drawn out by.
@@ -33,6 +46,11 @@ impl TextureContext {
     /// Where a ray's cone meets a surface: an ellipse, drawn out along the ray.
     pub fn new(si: &SurfaceInteraction) -> Self {
         let mut context = Self::at_point(si.p, si.ng, si.uv);
+        context.place = Some(MeshPlace {
+            geometry: si.hit.geometry,
+            primitive: si.hit.primitive,
+            barycentrics: si.barycentrics,
+        });
         if si.footprint > 0.0 {
             let cos = si.ng.dot(si.wo);
             let across = (si.wo - si.ng * cos).try_normalize();
@@ -54,6 +72,7 @@ impl TextureContext {
             uv,
             duvdx: Vec2::ZERO,
             duvdy: Vec2::ZERO,
+            place: None,
         }
     }
 
@@ -87,7 +106,7 @@ fn uv_changes(dpdu: Vec3, dpdv: Vec3, dpdx: Vec3, dpdy: Vec3) -> [Vec2; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{GeometryId, Hit, PrimitiveId};
+    use crate::geometry::Hit;
 
     /// The plane z = 0 with u = x / 2 and v = y / 3 seen from direction `wo`.
     fn plane(wo: Vec3, footprint: f32) -> SurfaceInteraction {
@@ -99,6 +118,7 @@ mod tests {
             dpdu: Vec3::new(2.0, 0.0, 0.0),
             dpdv: Vec3::new(0.0, 3.0, 0.0),
             uv: Vec2::new(0.25, 0.5),
+            barycentrics: Vec2::ZERO,
             wo,
             footprint,
             time: 0.0,

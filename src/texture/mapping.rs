@@ -161,6 +161,7 @@ mod tests {
             uv,
             duvdx: Vec2::new(0.01, 0.02),
             duvdy: Vec2::new(-0.03, 0.04),
+            place: None,
         }
     }
 

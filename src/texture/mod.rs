@@ -3,6 +3,7 @@
 //! A texture is asked with a [`TextureContext`], which says how much of the surface one sample stands for, so that it can filter
 //! itself. A [`FloatTexture::Constant`] or [`SpectrumTexture::Constant`] is answered without one.
 
+mod attribute;
 mod bilerp;
 mod blend;
 mod context;
@@ -12,9 +13,10 @@ mod mipmap;
 mod noise;
 mod procedural;
 
+pub use attribute::{AttributeTable, AttributeTexture};
 pub use bilerp::Bilerp;
 pub use blend::{Blend, BlendWeight};
-pub use context::TextureContext;
+pub use context::{MeshPlace, TextureContext};
 pub use image::ImageTexture;
 pub use mapping::{Coordinates2, Coordinates3, Mapping2, TextureSpace};
 pub use mipmap::{Filter, MipMap, Wrap};
@@ -39,6 +41,8 @@ pub enum FloatTexture {
     Bilerp(Arc<Bilerp<f32>>),
     /// The first channel of an image.
     Image(Arc<ImageTexture>),
+    /// What meshes have.
+    Attribute(AttributeTexture),
     /// Made of noise.
     Noise(Arc<NoiseTexture>),
 }
@@ -56,6 +60,8 @@ pub enum SpectrumTexture {
     Bilerp(Arc<Bilerp<CompiledSpectrum>>),
     /// The colours of an image.
     Image(Arc<ImageTexture>, RgbSampler),
+    /// The colours that meshes have.
+    Attribute(AttributeTexture, RgbSampler),
     /// Layers of stone.
     Marble(Arc<Marble>, RgbSampler),
 }
@@ -93,6 +99,7 @@ impl FloatTexture {
                 corners.evaluate(context, 0.0, |value| *value, |sum, value, weight| sum + value * weight)
             }
             Self::Image(texture) => texture.evaluate(context),
+            Self::Attribute(texture) => texture.evaluate(context),
             Self::Noise(texture) => texture.evaluate(context),
         }
     }
@@ -145,6 +152,7 @@ impl SpectrumTexture {
                 |sum, value, weight| sum + value * weight,
             ),
             Self::Image(texture, rgb) => rgb.sample(texture.evaluate_rgb(context), lambda),
+            Self::Attribute(texture, rgb) => rgb.sample(texture.evaluate_rgb(context), lambda),
             Self::Marble(texture, rgb) => rgb.sample(texture.evaluate(context), lambda),
         }
     }

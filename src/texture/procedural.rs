@@ -256,6 +256,7 @@ mod tests {
                 uv: Vec2::ZERO,
                 duvdx: Vec2::ZERO,
                 duvdy: Vec2::ZERO,
+                place: None,
             })
         };
         for i in 0..1000 {

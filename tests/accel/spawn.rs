@@ -80,6 +80,11 @@ fn all(rng: &mut Rng) -> Vec<(&'static str, Arc<World>)> {
             "moving triangles",
             worlds::instanced(vec![Shape::Mesh(triangles(rng))], [moving]),
         ),
+        ("tubes", worlds::of_shapes(vec![worlds::tubes(rng, 200)])),
+        (
+            "instanced tubes",
+            worlds::instanced(vec![worlds::tubes(rng, 20)], [fixed(rng), fixed(rng)]),
+        ),
     ]
 }
 
@@ -110,6 +115,11 @@ fn towards(world: &World, rng: &mut Rng) -> Ray {
         Shape::Curves(curves) => {
             let [a, b, c, d] = curves.segments()[rng.below(curves.segments().len())].points;
             let on = (a + 3.0 * b + 3.0 * c + d) * 0.125 + 0.01 * rng.cube();
+            (on.as_dvec3(), 0.1)
+        }
+        Shape::Tubes(tubes) => {
+            let piece = &tubes.pieces()[rng.below(tubes.pieces().len())];
+            let on = piece.ends[0].lerp(piece.ends[1], rng.unit()) + piece.radii[0] * rng.direction();
             (on.as_dvec3(), 0.1)
         }
         Shape::Patches(mesh) => {
@@ -144,7 +154,7 @@ fn a_ray_does_not_meet_the_primitive_that_it_leaves() {
                 let Some((hit, _)) = answer else { continue };
                 let surface = world.interaction(ray, *hit);
                 let shape = &world.geometry(hit.geometry).shape;
-                let is_convex = matches!(shape, Shape::Spheres(_) | Shape::Quadrics(_));
+                let is_convex = matches!(shape, Shape::Spheres(_) | Shape::Quadrics(_) | Shape::Tubes(_));
                 for _ in 0..4 {
                     let mut w = rng.direction();
                     if rng.below(4) == 0 {

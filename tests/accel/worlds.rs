@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lucerna::geometry::{
     CurveKind, CurveSegment, CurveSet, Geometry, Group, Instance, PatchMesh, Quadric, QuadricKind, Shape, Sphere,
-    TriangleMesh, World, WorldBuilder,
+    TriangleMesh, TubePiece, TubeSet, World, WorldBuilder,
 };
 use lucerna::math::{AnimatedTransform, DAffine3, DQuat, DVec3, Vec3};
 
@@ -252,6 +252,24 @@ pub fn curves(rng: &mut Rng, count: usize, kind: CurveKind) -> Shape {
     Shape::Curves(CurveSet::new(segments, kind, 2, DAffine3::IDENTITY).unwrap())
 }
 
+/// Pieces of tubes of all proportions in a cube, closed and open, and some that are balls.
+pub fn tubes(rng: &mut Rng, count: usize) -> Shape {
+    let piece = |i: usize| {
+        let start = rng.cube();
+        let along = 0.3 * rng.direction();
+        let axis = along.normalize();
+        TubePiece {
+            ends: [start, start + along * if i % 8 == 7 { 0.01 } else { 1.0 }],
+            radii: [rng.range(0.01, 0.1), rng.range(0.0, 0.1)],
+            along: [0.0, 1.0],
+            tangents: i
+                .is_multiple_of(2)
+                .then(|| [(axis + 0.1 * rng.direction()).normalize(), axis]),
+        }
+    };
+    Shape::Tubes(TubeSet::new((0..count).map(piece).collect(), DAffine3::IDENTITY).unwrap())
+}
+
 /// Many of the same triangle, triangles without area, and triangles that share planes and edges.
 fn degenerate(rng: &mut Rng) -> TriangleMesh {
     let mut positions: Vec<Vec3> = (0..60).map(|_| rng.cube()).collect();
@@ -372,6 +390,14 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
                     Shape::Mesh(soup(rng, 30, 0.5)),
                 ],
                 (0..10).map(|_| motion(rng)).collect::<Vec<_>>(),
+            ),
+        ),
+        ("tubes", of_shapes(vec![tubes(rng, 80)])),
+        (
+            "instances of tubes",
+            instanced(
+                vec![tubes(rng, 12)],
+                (0..6).map(|_| fixed(place(rng, 0.5, 1.0))).collect::<Vec<_>>(),
             ),
         ),
     ]

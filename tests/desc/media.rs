@@ -1,6 +1,6 @@
 //! Participating media and the boundaries between them.
 
-use lucerna::desc::{MaterialKind, MediumId, MediumInterfaceDesc, SpectrumValue};
+use lucerna::desc::{CoefficientsDesc, MaterialKind, MediumId, MediumInterfaceDesc, SpectrumValue};
 
 use super::{STRICT, read, scene};
 
@@ -26,11 +26,12 @@ fn media_stand_on_the_two_sides_of_shapes() {
     // `MediumInterface` before `WorldBegin` holds on after it; one name stands for both sides, where nothing changes.
     assert_eq!(media, [interface(None, air), interface(wine, air), None, None]);
     assert_eq!((scene.media[0].scale, scene.media[0].g), (0.5, -0.25));
-    assert_eq!(scene.media[0].sigma_a.value, SpectrumValue::Constant(1.0));
-    assert!(matches!(
-        scene.media[1].sigma_a.value,
-        SpectrumValue::Rgb([0.11632, ..], _)
-    ));
+    let sigma_a = |medium: usize| match &scene.media[medium].coefficients {
+        CoefficientsDesc::Parts { sigma_a, .. } => sigma_a.value.clone(),
+        CoefficientsDesc::Whole { .. } => panic!("no extinction was given"),
+    };
+    assert_eq!(sigma_a(0), SpectrumValue::Constant(1.0));
+    assert!(matches!(sigma_a(1), SpectrumValue::Rgb([0.11632, ..], _)));
 }
 
 #[test]

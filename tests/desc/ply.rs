@@ -1,7 +1,7 @@
 //! PLY meshes in all encodings, and bad ones.
 
 use glam::{Vec2, Vec3};
-use lucerna::desc::{MeshDesc, ply};
+use lucerna::desc::{AttributeDomain, MeshDesc, ply};
 
 /// Numbers of a file, written in one of the encodings.
 #[derive(Clone, Copy, PartialEq)]
@@ -169,4 +169,60 @@ fn truncated_binary_files_are_refused() {
         let error = ply::parse(&file.bytes[..length]).expect_err("truncated");
         assert!(length < start || error.contains("byte "), "{error}");
     }
+}
+
+/// Names and numbers as in Mitsuba 3, but for colours of bytes.
+#[test]
+fn attributes_are_read_if_they_are_asked_for() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property uchar green\nproperty uchar red\nproperty uchar blue\nproperty uchar alpha\n\
+             property float heat_0\nproperty short bend_x\nproperty short bend_y\nproperty short bend_z\nproperty float lone\n\
+             element face 2\nproperty list uchar int vertex_indices\nproperty float paint_r\nproperty float paint_g\n\
+             property float paint_b\nend_header\n"
+        )
+    };
+    let vertices = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut text = header("ascii");
+    let mut binary = header("binary_big_endian").into_bytes();
+    for (i, v) in vertices.iter().enumerate() {
+        let (colors, bends) = ([51_u8, 255, 0, 7], [i as i16, -1, 2]);
+        let [x, y, z] = v;
+        text += &format!("{x} {y} {z} 51 255 0 7 {i}.5 {i} -1 2 9\n");
+        v.iter().for_each(|c| binary.extend(c.to_be_bytes()));
+        binary.extend(colors);
+        binary.extend((i as f32 + 0.5).to_be_bytes());
+        bends.iter().for_each(|c| binary.extend(c.to_be_bytes()));
+        binary.extend(9.0_f32.to_be_bytes());
+    }
+    // A quadrilateral, which becomes two triangles, and a triangle.
+    for corners in [&[0_i32, 1, 2, 1][..], &[2, 1, 0]] {
+        let words: Vec<String> = corners.iter().map(i32::to_string).collect();
+        text += &format!("{} {} 0.25 0.5 {}\n", corners.len(), words.join(" "), corners.len());
+        binary.push(corners.len() as u8);
+        corners.iter().for_each(|c| binary.extend(c.to_be_bytes()));
+        [0.25, 0.5, corners.len() as f32]
+            .iter()
+            .for_each(|c| binary.extend(c.to_be_bytes()));
+    }
+    for content in [text.as_bytes(), &binary] {
+        let mesh = ply::parse_with_attributes(content).unwrap_or_else(|e| panic!("{e}"));
+        let [color, heat, bend, paint] = &mesh.attributes[..] else {
+            panic!("{:?}", mesh.attributes)
+        };
+        assert_eq!((color.name.as_str(), color.channels), ("vertex_color", 3));
+        assert_eq!(color.values, [1.0, 0.2, 0.0].repeat(3));
+        assert_eq!((heat.name.as_str(), heat.channels), ("vertex_heat", 1));
+        assert_eq!(heat.values, [0.5, 1.5, 2.5]);
+        assert_eq!((bend.name.as_str(), bend.channels), ("vertex_bend", 3));
+        assert_eq!(bend.values, [0.0, -1.0, 2.0, 1.0, -1.0, 2.0, 2.0, -1.0, 2.0]);
+        assert_eq!((paint.name.as_str(), paint.channels), ("face_paint_color", 3));
+        assert_eq!(paint.values, [0.25, 0.5, 4.0, 0.25, 0.5, 4.0, 0.25, 0.5, 3.0]);
+        assert_eq!(paint.domain, AttributeDomain::Triangles);
+        assert!(ply::parse(content).is_ok_and(|mesh| mesh.attributes.is_empty() && mesh.indices.len() == 3));
+    }
+    let endless = text.replace("0.25 0.5", "0.25 inf");
+    let error = ply::parse_with_attributes(endless.as_bytes()).expect_err("not finite");
+    assert!(error.contains("face_paint_color"), "{error}");
 }

@@ -33,6 +33,7 @@ fn quadrics_have_the_parameters_of_pbrt() {
         height,
         radius,
         inner_radius,
+        radial_uv: false,
     };
     let expected = [
         (QuadricDesc::Cylinder { radius: 1.0, z }, 360.0),

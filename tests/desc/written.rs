@@ -82,6 +82,9 @@ fn rarer_things_are_the_same_again() {
         "Integrator \"ambientocclusion\" WorldBegin",
         "Film \"gbuffer\" \"string coordinatesystem\" \"world\" Camera \"spherical\" WorldBegin",
         "Film \"spectral\" \"float lambdamin\" 400.5 \"integer nbuckets\" 7 Camera \"perspective\" WorldBegin",
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_t\" [1 2 3] \"rgb albedo\" [.5 .2 .1] WorldBegin
+            MediumInterface \"m\" \"\" Shape \"sphere\"",
+        "WorldBegin Shape \"disk\" \"bool radialuv\" true Shape \"disk\"",
         "WorldBegin Material \"hair\" \"rgb sigma_a\" [3 2 1] \"float beta_n\" .4 Shape \"sphere\"",
         "WorldBegin Material \"hair\" \"float pheomelanin\" .4 Shape \"sphere\"",
         "WorldBegin Material \"hair\" \"rgb color\" [.3 .2 .1] \"float alpha\" 3 \"float eta\" 1.4 Shape \"sphere\"",

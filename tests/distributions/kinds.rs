@@ -158,6 +158,7 @@ const PLASTIC: PrincipledParameters = PrincipledParameters {
     sheen_tint: 0.0,
     clearcoat: 0.0,
     clearcoat_gloss: 0.0,
+    flatness: 0.0,
 };
 const METAL: PrincipledParameters = PrincipledParameters {
     metallic: 1.0,
@@ -183,6 +184,7 @@ const ALL: PrincipledParameters = PrincipledParameters {
     sheen_tint: 0.5,
     clearcoat: 0.8,
     clearcoat_gloss: 0.1,
+    flatness: 0.0,
 };
 
 /// The cosine-weighted integral of f over all directions: the midpoint rule in azimuth, of a periodic function, and Gauss's rule

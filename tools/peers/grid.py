@@ -35,7 +35,21 @@ def make_files(work):
     sky = 0.3 + 0.3 * np.stack([y / 31.0, 1 - y / 31.0, x / 63.0], axis=-1)
     sky[8:11, 20:24] = [12, 10, 8]
     mi.Bitmap(sky.astype(np.float32)).write(str(work / "sky.exr"))
+    curves(work)
     blob(work, rng)
+
+
+def curves(work):
+    """A thick coil that gets thinner, and some straws."""
+    t = np.linspace(0, 1, 14)
+    coil = np.stack([np.cos(9 * t) * (1 - 0.4 * t), 1.6 * t - 0.75, np.sin(9 * t) * (1 - 0.4 * t), 0.22 - 0.15 * t], axis=-1)
+    straws = [
+        np.array([[-0.9 + 0.45 * i, -1.0, 0.8, 0.06], [-0.8 + 0.4 * i, -0.4, 0.9, 0.05], [-0.7 + 0.4 * i, 0.2, 0.5, 0.04], [-0.9 + 0.5 * i, 0.9, 0.6, 0.02]])
+        for i in range(5)
+    ]
+    text = "\n\n".join("\n".join(" ".join(f"{x:.6f}" for x in point) for point in curve) for curve in [coil, *straws])
+    for kind in ("linearcurve", "bsplinecurve"):
+        (work / f"{kind}.txt").write_text(text + "\n")
 
 
 def save8(path, values):
@@ -68,6 +82,19 @@ def blob(work, rng):
                 f.writelines(f"vn {v[0]:.6f} {v[1]:.6f} {v[2]:.6f}\n" for v in normals)
             corner = (lambda k: f"{k}/{k}/{k}") if with_normals else (lambda k: f"{k}/{k}")
             f.writelines("f " + " ".join(corner(k + 1) for k in face) + "\n" for face in faces)
+    with open(work / "colored.ply", "w") as f:
+        names = ["x", "y", "z", "r", "g", "b", "other_x", "other_y", "other_z", "gloss_0"]
+        f.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n")
+        f.writelines(f"property float {name}\n" for name in names)
+        f.write(f"element face {len(faces)}\nproperty list uchar int vertex_indices\n")
+        f.writelines(f"property float {name}\n" for name in ("r", "g", "b", "number_0"))
+        f.write("end_header\n")
+        for v in vertices:
+            color, other = 0.5 + 0.4 * np.sin(3 * v), np.abs(v) * 0.6
+            f.write(" ".join(f"{c:.6f}" for c in (*v, *color, *other, 0.1 + 0.2 * abs(v[0]))) + "\n")
+        for i, face in enumerate(faces):
+            color = [0.2 + 0.6 * (i % 3 == 0), 0.2 + 0.5 * (i % 5 == 0), 0.3 + 0.4 * (i % 2)]
+            f.write(f"3 {face[0]} {face[1]} {face[2]} " + " ".join(f"{c:.6f}" for c in (*color, 0.3 + 0.6 * (i % 2))) + "\n")
     with open(work / "blob.ply", "w") as f:
         f.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n")
         f.writelines(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz", "u", "v"))

@@ -101,8 +101,12 @@ def bsdfs():
     yield "principled-glass", ball(bsdf("principled", base + number("spec_trans", 1) + number("roughness", 0.2)))
     yield "principled-cloth", ball(bsdf("principled", base + number("sheen", 1) + number("sheen_tint", 0.5)))
     yield "principled-lacquer", ball(bsdf("principled", base + number("clearcoat", 1) + number("clearcoat_gloss", 0.8)))
+    yield "principled-flat", ball(bsdf("principled", base + number("flatness", 0.8)))
     yield "mask", quad(bsdf("mask", number("opacity", 0.3) + two(bsdf("diffuse"))))
     yield "mask-texture", quad(bsdf("mask", CHECKS.format(name="opacity", content=number("color0", 0.9) + number("color1", 0)) + two(bsdf("diffuse"))))
+    twice = bsdf("mask", number("opacity", 0.6) + two(bsdf("diffuse")))
+    yield "mask-of-mask", quad(bsdf("mask", number("opacity", 0.5) + twice))
+    yield "blendbsdf-null", quad(bsdf("blendbsdf", number("weight", 0.3) + two(bsdf("diffuse")) + bsdf("null")))
     yield "blendbsdf", ball(bsdf("blendbsdf", number("weight", 0.3) + bsdf("diffuse") + bsdf("roughconductor", gold)))
     yield "blendbsdf-texture", quad(bsdf("blendbsdf", CHECKS.format(name="weight", content=number("color0", 0) + number("color1", 1)) + bsdf("diffuse") + bsdf("conductor")))
     yield "blendbsdf-glass", ball(bsdf("blendbsdf", number("weight", 0.5) + bsdf("dielectric") + bsdf("diffuse")))
@@ -166,6 +170,28 @@ def textures():
     yield "checkerboard-default", textured('<texture type="checkerboard" name="reflectance"/>')
 
 
+def attributes():
+    def mesh(file, texture, more=""):
+        return scene(f'<shape type="ply"><string name="filename" value="{file}"/>{two(bsdf("diffuse", texture))}{more}</shape>')
+
+    def of(name, slot="reflectance", more=""):
+        return f'<texture type="mesh_attribute" name="{slot}"><string name="name" value="{name}"/>{more}</texture>'
+
+    yield "vertex-color", mesh("colored.ply", of("vertex_color"))
+    yield "vertex-color-scaled", mesh("colored.ply", of("vertex_color", more=number("scale", 0.6)))
+    yield "face-color", mesh("colored.ply", of("face_color"))
+    yield "vertex-other", mesh("colored.ply", of("vertex_other"))
+    rough = bsdf("roughconductor", of("vertex_gloss", "alpha"))
+    yield "vertex-number", scene(f'<shape type="ply"><string name="filename" value="colored.ply"/>{rough}</shape>')
+    opacity = bsdf("mask", of("face_number", "opacity") + two(bsdf("diffuse")))
+    # To Mitsuba a mask that is passed is an edge of the path.
+    deep = '<integrator type="path"><integer name="max_depth" value="50"/></integrator>'
+    yield "face-number-mask", scene(f'<shape type="ply"><string name="filename" value="colored.ply"/>{opacity}</shape>', integrator=deep)
+    inner = f'<shape type="ply"><string name="filename" value="colored.ply"/>{two(bsdf("diffuse", of("face_color")))}</shape>'
+    place = '<transform name="to_world"><scale value="0.7"/><rotate y="1" angle="70"/></transform>'
+    yield "instance", scene(f'<shape type="shapegroup" id="g">{inner}</shape><shape type="instance"><ref id="g"/>{place}</shape>')
+
+
 def shapes():
     grey = two(bsdf("diffuse", rgb("reflectance", "0.6, 0.6, 0.5")))
     one = bsdf("diffuse", rgb("reflectance", "0.6, 0.6, 0.5"))
@@ -177,6 +203,15 @@ def shapes():
         yield f"{kind}-flipped", scene(f'<shape type="{kind}">{turn}{one}<boolean name="flip_normals" value="true"/></shape>')
     yield "sphere", scene(f'<shape type="sphere"><point name="center" x="0.3" y="0.1" z="0"/><float name="radius" value="0.7"/>{one}</shape>')
     yield "cylinder-ends", scene(f'<shape type="cylinder"><point name="p0" x="-1" y="-0.5" z="0"/><point name="p1" x="0.8" y="0.6" z="0.5"/><float name="radius" value="0.4"/>{grey}</shape>')
+    for kind in ("linearcurve", "bsplinecurve"):
+        name = f'<string name="filename" value="{kind}.txt"/>'
+        bent = '<transform name="to_world"><scale x="1.1"/><rotate y="1" angle="20"/></transform>'
+        yield f"{kind}", scene(f'<shape type="{kind}">{name}{one}</shape>')
+        yield f"{kind}-placed", scene(f'<shape type="{kind}">{name}{bent}{one}</shape>')
+        yield f"{kind}-textured", scene(f'<shape type="{kind}">{name}{two(bsdf("diffuse", bitmap("reflectance")))}</shape>')
+        yield f"{kind}-gloss", scene(f'<shape type="{kind}">{name}{bsdf("roughconductor", number("alpha", 0.2))}</shape>')
+        group = f'<shape type="shapegroup" id="g"><shape type="{kind}">{name}{one}</shape></shape>'
+        yield f"{kind}-instance", scene(group + f'<shape type="instance"><ref id="g"/><transform name="to_world"><scale value="0.8"/><rotate z="1" angle="40"/></transform></shape>')
     for file in ("blob.obj", "blob.ply", "flat.obj"):
         kind = file[-3:]
         name = f'<string name="filename" value="{file}"/>'
@@ -224,7 +259,37 @@ def integrators():
                            camera=CAMERA.format(film=film(), sampler=SAMPLER))
 
 
+def media():
+    def volume(content, name="interior", kind="hg", g=0.5):
+        phase = f'<phase type="{kind}">{number("g", g) if kind == "hg" else ""}</phase>'
+        return f'<medium type="homogeneous" name="{name}">{content}{phase}</medium>'
+
+    def through(content, camera=None, light=LAMP + SKY):
+        integrator = '<integrator type="volpathmis"><integer name="max_depth" value="16"/></integrator>'
+        return scene(content, camera=camera, integrator=integrator, light=light)
+
+    colors = rgb("sigma_t", "0.5, 0.8, 0.3") + rgb("albedo", "0.9, 0.6, 0.8")
+    inner = '<shape type="sphere"><float name="radius" value="0.5"/></shape>'
+    turned = '<transform name="to_world"><scale value="0.9"/><rotate y="1" angle="30"/></transform>'
+    plain = number("sigma_t", 0.8) + number("albedo", 0.9)
+    yield "box-isotropic", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(plain, kind="isotropic")}</shape>{inner}')
+    for g in (-0.6, 0.3, 0.8):
+        yield f"box-hg-{g}", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(plain, g=g)}</shape>{inner}')
+    yield "box-colors", through(f'<shape type="cube">{turned}{bsdf("null")}{volume(colors + number("scale", 2))}</shape>{inner}')
+    dark = '<spectrum name="sigma_t" value="400:0.3, 550:2, 700:0.5"/>' + number("albedo", 0)
+    yield "glass-absorbing", through(f'<shape type="sphere">{bsdf("dielectric")}{volume(rgb("sigma_t", "0.1, 0.5, 0.9") + number("albedo", 0) + number("scale", 2))}</shape>')
+    yield "glass-absorbing-samples", through(f'<shape type="sphere">{bsdf("dielectric")}{volume(dark)}</shape>')
+    yield "glass-cloudy", through(f'<shape type="sphere">{bsdf("roughdielectric", number("alpha", 0.2))}{volume(plain)}</shape>')
+    fog = volume(number("sigma_t", 0.1) + number("albedo", 0.8), "fog")
+    hole = f'<shape type="sphere">{bsdf("null")}{fog.replace(chr(34) + "fog" + chr(34), chr(34) + "exterior" + chr(34))}</shape>'
+    around = CAMERA.format(film=film(), sampler=SAMPLER).replace("</sensor>", fog + "</sensor>")
+    # Of lamps only: through endless fog nothing is seen of an environment, but by Mitsuba, to which it is as far as the scene is wide.
+    yield "camera-in-fog", through('<shape type="sphere"/>', around, LAMP)
+    yield "camera-in-fog-hole", through(hole + inner, around, LAMP)
+    yield "path-sees-none", scene(f'<shape type="sphere">{bsdf("dielectric")}{volume(plain)}</shape>')
+
+
 def all_scenes():
-    for group in (bsdfs, emitters, textures, shapes, sensors, integrators):
+    for group in (bsdfs, emitters, textures, attributes, shapes, sensors, integrators, media):
         for name, text in group():
             yield f"{group.__name__}/{name}", text

@@ -9,7 +9,9 @@ pub static MEDIA: [Entry; 1] = [Entry::new(
     "MakeNamedMedium",
     "homogeneous",
     "The same everywhere: absorbs, scatters by Henyey and Greenstein's phase function, and emits; `path` renders it",
-    &[&SIGMA_A, &SIGMA_S, &SCALE, &PRESET, &G, &LE, &LE_SCALE],
+    &[
+        &SIGMA_A, &SIGMA_S, &SIGMA_T, &ALBEDO, &SCALE, &PRESET, &G, &LE, &LE_SCALE,
+    ],
 )];
 
 const PER_UNIT: &str = "1 / scene units";
@@ -26,7 +28,18 @@ pub static SIGMA_S: Parameter = Parameter::new(
     "Scattering coefficient",
 )
 .unit(PER_UNIT);
-pub static SCALE: Parameter = Parameter::float("scale", 1.0, FloatRange::NotNegative, "A factor of both coefficients");
+pub static SIGMA_T: Parameter = Parameter::new(
+    "sigma_t",
+    ParameterKind::Spectrum { default: 1.0 },
+    "Extinction coefficient; with it or with albedo there is no sigma_a and no sigma_s",
+)
+.unit(PER_UNIT);
+pub static ALBEDO: Parameter = Parameter::new(
+    "albedo",
+    ParameterKind::Spectrum { default: 0.75 },
+    "The part of extinction that is scattering, in [0, 1]",
+);
+pub static SCALE: Parameter = Parameter::float("scale", 1.0, FloatRange::NotNegative, "A factor of the coefficients");
 pub static PRESET: Parameter = Parameter::new(
     "preset",
     ParameterKind::Choice {

@@ -58,6 +58,16 @@ impl<'g> Loader<'g> {
         surface
     }
 
+    /// The material of what is only a boundary between media.
+    pub fn boundary(&mut self, span: Span) -> MaterialId {
+        let id = match self.boundary {
+            Some(id) => id,
+            None => self.add_material(MaterialKind::Interface, span),
+        };
+        self.boundary = Some(id);
+        id
+    }
+
     /// A bsdf as it is inside a `twosided`, each translated once; `None` for `null`, and for what cannot be translated, which is said.
     pub fn scattering(&mut self, index: ObjectIndex) -> Option<Scattering> {
         if let Some(scattering) = self.scattering.get(&index) {
@@ -274,6 +284,7 @@ impl<'g> Loader<'g> {
             sheen_tint: fraction("sheen_tint", 0.0),
             clearcoat: fraction("clearcoat", 0.0),
             clearcoat_gloss: fraction("clearcoat_gloss", 0.0),
+            flatness: fraction("flatness", 0.0),
             as_in_mitsuba: true,
         };
         desc.base_color = self.color(base, 0.5, span, Use::Albedo);
@@ -289,9 +300,6 @@ impl<'g> Loader<'g> {
             "main_specular_sampling_rate",
             "clearcoat_sampling_rate",
         ]);
-        if let Some(flatness) = props.take("flatness").filter(|p| !Self::is_number(p, 0.0)) {
-            props.unsupported(flatness.span, "`flatness` is not supported", "it is 0");
-        }
         let transmits = desc.spec_trans != Textured::Value(0.0);
         (MaterialKind::Principled(desc), !transmits)
     }

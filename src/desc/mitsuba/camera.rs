@@ -16,13 +16,7 @@ impl<'g> Loader<'g> {
         let mut props = Props::new(object);
         let film = self.child(&mut props, Class::Film);
         let sampler = self.child(&mut props, Class::Sampler);
-        for (_, medium) in self.children(&mut props, Class::Medium) {
-            props.unsupported(
-                medium.span,
-                "participating media are not supported",
-                "the sensor is without",
-            );
-        }
+        let medium = self.medium_inside(&mut props);
         if let Some(srf) = props.take("srf") {
             props.unsupported(
                 srf.span,
@@ -45,6 +39,7 @@ impl<'g> Loader<'g> {
         };
         props.finish(self.report());
         let Some(camera) = camera else { return };
+        let camera = CameraDesc { medium, ..camera };
         let fit = |id: &&String| {
             let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
             !id.is_empty() && !id.starts_with('.') && id.chars().all(plain)

@@ -7,7 +7,6 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::graph::{Object, Property};
 use super::light_image;
 use super::loader::Loader;
-use super::plugins::Class;
 use super::props::Props;
 use crate::desc::{AreaLightDesc, LightDesc, LightKind, MotionDesc, SpectrumDesc, SpotFalloff};
 use crate::error::Error;
@@ -34,6 +33,7 @@ impl<'g> Loader<'g> {
         }
         let radiance = props.take("radiance");
         props.ignore(&["sampling_weight"]);
+        self.medium_inside(&mut props);
         let image = self.light_image(&mut props, radiance);
         let light = match image {
             Some(image) => image.map(|image| (None, Some(Arc::new(light_image::smooth(&image))), 1.0)),
@@ -82,13 +82,8 @@ impl<'g> Loader<'g> {
                 None
             }
         };
-        for (_, medium) in self.children(&mut props, Class::Medium) {
-            props.unsupported(
-                medium.span,
-                "participating media are not supported",
-                "the emitter is without",
-            );
-        }
+        // Paths from the camera know what is around a light when they come there.
+        self.medium_inside(&mut props);
         props.finish(self.report());
         self.lights.extend(light);
     }

@@ -33,6 +33,13 @@ pub(super) struct Object {
     pub span: Span,
 }
 
+impl Object {
+    /// Whether it is a texture that asks a mesh for an attribute.
+    pub fn is_attribute(&self) -> bool {
+        self.class == Class::Texture && self.plugin == "mesh_attribute"
+    }
+}
+
 /// Something that a plugin is told.
 #[derive(Debug)]
 pub(super) struct Property {
@@ -112,6 +119,11 @@ impl Graph {
     /// The object of an index.
     pub fn object(&self, index: ObjectIndex) -> &Object {
         &self.objects[index.0]
+    }
+
+    /// Whether any texture asks meshes for their attributes.
+    pub fn has_attributes(&self) -> bool {
+        self.objects.iter().any(Object::is_attribute)
     }
 
     /// Adds what an element says to an object.

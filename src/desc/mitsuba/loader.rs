@@ -11,8 +11,9 @@ use super::xml::XmlReader;
 use crate::desc::images::{self, PendingImages};
 use crate::desc::report::Report;
 use crate::desc::{
-    ImageDesc, InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MaterialId, MaterialKind, ObjectDesc, ObjectId,
-    SceneDesc, ShapeDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, Textured, ViewDesc,
+    ImageDesc, InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MaterialId, MaterialKind, MediumDesc, MediumId,
+    ObjectDesc, ObjectId, SceneDesc, ShapeDesc, SpectrumDesc, SpectrumValue, TextureDesc, TextureId, Textured,
+    ViewDesc,
 };
 use crate::error::{Error, Result, Span};
 
@@ -29,6 +30,9 @@ pub(super) struct Loader<'g> {
     /// Textures that have been translated, by whether they are of spectra.
     pub texture_ids: HashMap<(ObjectIndex, bool), TextureId>,
     pub images: PendingImages,
+    pub media: Vec<MediumDesc>,
+    /// Media that have been translated; none for those that nothing sees.
+    pub media_ids: HashMap<ObjectIndex, Option<MediumId>>,
     pub meshes: Meshes,
     pub shapes: Vec<ShapeDesc>,
     pub objects: Vec<ObjectDesc>,
@@ -40,6 +44,8 @@ pub(super) struct Loader<'g> {
     integrator: Option<IntegratorDesc>,
     /// The bsdf of shapes that have none, and of such shapes that emit.
     pub default_surfaces: [Option<Surface>; 2],
+    /// The material of shapes that are boundaries between media only.
+    pub boundary: Option<MaterialId>,
 }
 
 impl<'g> Loader<'g> {
@@ -55,6 +61,8 @@ impl<'g> Loader<'g> {
             textures: Vec::new(),
             texture_ids: HashMap::new(),
             images: PendingImages::default(),
+            media: Vec::new(),
+            media_ids: HashMap::new(),
             meshes,
             shapes: Vec::new(),
             objects: Vec::new(),
@@ -64,6 +72,7 @@ impl<'g> Loader<'g> {
             views: Vec::new(),
             integrator: None,
             default_surfaces: [None, None],
+            boundary: None,
         }
     }
 
@@ -168,7 +177,7 @@ impl<'g> Loader<'g> {
             objects: self.objects,
             instances: self.instances,
             lights: self.lights,
-            media: Vec::new(),
+            media: self.media,
             transform_times: [0.0, 1.0],
             warnings,
             hash,

@@ -31,6 +31,8 @@ pub(super) struct MeshFile {
     face_normals: bool,
     /// Whether v becomes 1 - v.
     invert_v: bool,
+    /// Whether its attributes are wanted.
+    with_attributes: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -56,7 +58,7 @@ impl Meshes {
         let mut read = HashMap::new();
         for object in graph.objects.iter().filter(|object| object.class == Class::Shape) {
             // What is wrong with the properties is said when the shape is translated.
-            if let Some(file) = MeshFile::of(&mut Props::new(object), xml)
+            if let Some(file) = MeshFile::of(&mut Props::new(object), graph, xml)
                 && read.insert(file.clone(), Err(String::new())).is_none()
             {
                 files.push(file);
@@ -80,7 +82,7 @@ impl Meshes {
 
 impl MeshFile {
     /// The file that a shape is in; `None` if it is in none. Takes the properties that say so.
-    pub fn of(props: &mut Props<'_>, xml: &XmlReader) -> Option<Self> {
+    pub fn of(props: &mut Props<'_>, graph: &Graph, xml: &XmlReader) -> Option<Self> {
         let object: &Object = props.object;
         let (format, flips) = match object.plugin.as_str() {
             "obj" => (Format::Obj, true),
@@ -109,6 +111,7 @@ impl MeshFile {
             face_normals,
             // Mitsuba's v is this program's the other way round.
             invert_v: !flips,
+            with_attributes: format == Format::Ply && graph.has_attributes(),
         })
     }
 
@@ -117,7 +120,14 @@ impl MeshFile {
             Format::Obj => obj::load(&self.path)
                 .map(|file| (file.mesh, file.hash, false))
                 .map_err(|e| first_problem(&e)),
-            Format::Ply => ply::load(&self.path).map(|file| (file.mesh, file.hash, false)),
+            Format::Ply => {
+                let file = if self.with_attributes {
+                    ply::load_with_attributes(&self.path)
+                } else {
+                    ply::load(&self.path)
+                };
+                file.map(|file| (file.mesh, file.hash, false))
+            }
             Format::Serialized => {
                 let file = serialized::load(&self.path, self.shape_index);
                 file.map(|file| (file.mesh, file.hash, file.face_normals))

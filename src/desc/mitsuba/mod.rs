@@ -14,8 +14,10 @@
 //! - A camera's x axis points to the left of the picture, and its angle of view is that of the width.
 //! - The first row of an image is at v = 0; meshes get 1 - v for pbrt's convention.
 
+mod attribute;
 mod bsdf;
 mod camera;
+mod curve;
 mod emitter;
 mod film;
 mod graph;
@@ -23,6 +25,7 @@ mod integrator;
 mod ior;
 mod light_image;
 mod loader;
+mod medium;
 mod mesh;
 mod nested;
 mod parameters;

@@ -51,13 +51,8 @@ impl<'g> Loader<'g> {
         let opacity = props.take("opacity");
         let alpha = self.fraction(opacity, 0.5);
         let inner = inner?;
-        if inner.alpha != Textured::Value(1.0) {
-            props.unsupported(
-                props.object.span,
-                "a `mask` inside a `mask` is not supported",
-                "the outer one counts",
-            );
-        }
+        let span = props.object.span;
+        let alpha = self.product(alpha, inner.alpha.clone(), span);
         // What is not masked has its sides here: a `mask` cannot be inside a `twosided`.
         Some(Scattering {
             material: self.closed(&inner),
@@ -78,6 +73,17 @@ impl<'g> Loader<'g> {
             props.error(span, "`blendbsdf` takes two bsdfs");
             return None;
         };
+        let [no_first, no_second] = [first, second].map(|(_, object)| object.plugin == "null");
+        if no_first || no_second {
+            let there = if no_first { second } else { first };
+            let inner = self.scattering(there.0)?;
+            let share = if no_first { amount } else { self.rest(amount, span) };
+            return Some(Scattering {
+                material: self.closed(&inner),
+                one_sided: false,
+                alpha: self.product(share, inner.alpha.clone(), span),
+            });
+        }
         let parts = [self.scattering(first.0)?, self.scattering(second.0)?];
         if parts.iter().any(|part| part.alpha != Textured::Value(1.0)) {
             props.unsupported(span, "a `mask` inside a `blendbsdf` is not supported", "it is ignored");

@@ -14,12 +14,14 @@ pub(super) enum Class {
     Film,
     Integrator,
     Medium,
+    Phase,
     Filter,
     Sampler,
     Sensor,
     Shape,
     Texture,
-    /// Phase functions, volumes and fields, which nothing reads.
+    Volume,
+    /// Fields, which nothing reads.
     Other,
 }
 
@@ -63,11 +65,13 @@ impl Class {
             Self::Film => "film",
             Self::Integrator => "integrator",
             Self::Medium => "medium",
+            Self::Phase => "phase",
             Self::Filter => "rfilter",
             Self::Sampler => "sampler",
             Self::Sensor => "sensor",
             Self::Shape => "shape",
             Self::Texture => "texture",
+            Self::Volume => "volume",
             Self::Other => "object",
         }
     }
@@ -95,7 +99,9 @@ impl Class {
             ),
             Self::Shape => (SHAPES, SHAPES_REFUSED),
             Self::Texture => (TEXTURES, TEXTURES_REFUSED),
-            Self::Medium => (&[], &["homogeneous", "heterogeneous"]),
+            Self::Medium => (&["homogeneous"], &["heterogeneous"]),
+            Self::Phase => (&["isotropic", "hg"], &["rayleigh", "blendphase", "tabphase", "sggx"]),
+            Self::Volume => (&["constvolume"], &["gridvolume"]),
             Self::Scene | Self::Other => (&[], &[]),
         }
     }
@@ -195,6 +201,8 @@ const SHAPES: &[&str] = &[
     "sphere",
     "disk",
     "cylinder",
+    "linearcurve",
+    "bsplinecurve",
     "obj",
     "ply",
     "serialized",
@@ -202,8 +210,6 @@ const SHAPES: &[&str] = &[
     "instance",
 ];
 const SHAPES_REFUSED: &[&str] = &[
-    "bsplinecurve",
-    "linearcurve",
     "sdfgrid",
     "ellipsoids",
     "ellipsoidsmesh",
@@ -249,7 +255,9 @@ pub(super) fn class_of(element: &Element) -> Option<Class> {
         "sensor" => Class::Sensor,
         "shape" => Class::Shape,
         "texture" => Class::Texture,
-        "phase" | "volume" | "field" => Class::Other,
+        "phase" => Class::Phase,
+        "volume" => Class::Volume,
+        "field" => Class::Other,
         "spectrum" if element.attribute("type").is_some() => Class::Texture,
         _ => return None,
     })

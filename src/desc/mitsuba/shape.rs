@@ -42,7 +42,10 @@ impl<'g> Loader<'g> {
     fn one_shape(&mut self, object: &'g Object) -> Option<ShapeDesc> {
         let mut props = Props::new(object);
         let form = self.form(&mut props);
-        self.refuse_children(&mut props);
+        let media = self.media_of(&mut props);
+        for (_, sensor) in self.children(&mut props, Class::Sensor) {
+            props.unsupported(sensor.span, "a sensor on a shape is not supported", "it is left out");
+        }
         let bsdf = self.child(&mut props, Class::Bsdf);
         let emitter = self.child(&mut props, Class::Emitter);
         props.ignore(&["silhouette_sampling_weight"]);
@@ -51,6 +54,14 @@ impl<'g> Loader<'g> {
         let surface = match bsdf {
             Some((index, _)) => self.surface(index),
             None => Some(self.default_surface(emitter.is_some())),
+        };
+        let media = media.filter(|media| media.interior != media.exterior);
+        let surface = match surface {
+            None if media.is_some() && area_light.is_none() => Some(Surface {
+                material: self.boundary(object.span),
+                alpha: Textured::Value(1.0),
+            }),
+            surface => surface,
         };
         let Some(Surface { material, alpha }) = surface else {
             self.nothing_to_see(object, area_light.as_ref());
@@ -61,13 +72,16 @@ impl<'g> Loader<'g> {
             self.report().warning(object.span, message);
         }
         let form = form?;
+        if let Some((index, _)) = bsdf {
+            self.check_attributes(index, object, &form.kind);
+        }
         Some(ShapeDesc {
             span: object.span,
             kind: form.kind,
             world_from_object: MotionDesc::fixed(form.world_from_object),
             reverse_orientation: form.reverse_orientation,
             material,
-            media: None,
+            media,
             alpha,
             area_light,
         })
@@ -82,18 +96,8 @@ impl<'g> Loader<'g> {
             let message = "a shape that emits and has the bsdf `null` is not supported";
             self.report().unsupported(object.span, message, "it is left out");
         } else {
-            let message = "this shape is left out: with the bsdf `null` and without media it does nothing";
+            let message = "this shape is left out: with the bsdf `null` and the same on both sides it does nothing";
             self.report().warning(object.span, message);
-        }
-    }
-
-    fn refuse_children(&mut self, props: &mut Props<'g>) {
-        for (_, medium) in self.children(props, Class::Medium) {
-            let message = "participating media are not supported";
-            props.unsupported(medium.span, message, "the shape is without");
-        }
-        for (_, sensor) in self.children(props, Class::Sensor) {
-            props.unsupported(sensor.span, "a sensor on a shape is not supported", "it is left out");
         }
     }
 
@@ -110,15 +114,22 @@ impl<'g> Loader<'g> {
                 props.ignore(&["face_normals"]);
                 (mesh(solids::cube()), DAffine3::IDENTITY, flip)
             }
-            "disk" => (mesh(solids::disk()), DAffine3::IDENTITY, flip),
-            "cylinder" => (mesh(solids::cylinder()), cylinder(props), flip),
+            "disk" => (solids::DISK, DAffine3::IDENTITY, flip),
+            "cylinder" => (solids::CYLINDER, cylinder(props), flip),
             "sphere" => {
                 let center = props.vector("center").unwrap_or(DVec3::ZERO);
                 let radius = props.positive("radius", 1.0);
                 (ShapeKind::Sphere { radius }, DAffine3::from_translation(center), flip)
             }
+            "linearcurve" | "bsplinecurve" => {
+                return Some(Form {
+                    kind: self.curves(props, &to_world)?,
+                    world_from_object: DAffine3::IDENTITY,
+                    reverse_orientation: flip,
+                });
+            }
             "obj" | "ply" | "serialized" => {
-                let file = MeshFile::of(props, &self.xml)?;
+                let file = MeshFile::of(props, self.graph, &self.xml)?;
                 match self.meshes.get(&file) {
                     Ok(read) => {
                         let kind = ShapeKind::TriangleMesh(read.mesh);
@@ -204,7 +215,7 @@ fn mesh(mesh: MeshDesc) -> ShapeKind {
     ShapeKind::TriangleMesh(Arc::new(mesh))
 }
 
-/// From the unit cylinder to one from `p0` to `p1`.
+/// From the unit cylinder to one from `p1` to `p0`, which turns v round.
 fn cylinder(props: &mut Props<'_>) -> DAffine3 {
     let p0 = props.vector("p0").unwrap_or(DVec3::ZERO);
     let p1 = props.vector("p1").unwrap_or(DVec3::Z);
@@ -215,6 +226,6 @@ fn cylinder(props: &mut Props<'_>) -> DAffine3 {
         return DAffine3::IDENTITY;
     }
     let turn = DMat3::from_quat(DQuat::from_rotation_arc(DVec3::Z, axis.normalize()));
-    let scale = DMat3::from_diagonal(DVec3::new(radius, radius, axis.length()));
-    DAffine3::from_mat3_translation(turn * scale, p0)
+    let scale = DMat3::from_diagonal(DVec3::new(radius, radius, -axis.length()));
+    DAffine3::from_mat3_translation(turn * scale, p1)
 }

@@ -97,11 +97,12 @@ impl<'g> Loader<'g> {
             }
             "checkerboard" => self.checkerboard(object, of_spectra),
             "mesh_attribute" => {
-                let message =
-                    "the texture `mesh_attribute` is not supported: meshes are read without further attributes";
-                self.report()
-                    .unsupported(object.span, message, "a grey of 0.5 stands in");
-                return None;
+                let (name, scale) = self.mesh_attribute(object)?;
+                if of_spectra {
+                    ClassedTexture::Spectrum(TextureKind::MeshAttribute { name, scale })
+                } else {
+                    ClassedTexture::Float(TextureKind::MeshAttribute { name, scale })
+                }
             }
             _ => {
                 self.refuse(object, "a grey of 0.5 stands in");
@@ -234,12 +235,35 @@ impl Loader<'_> {
         if scale == 1.0 {
             return id;
         }
+        let (tex, scale) = (Textured::Texture(id), Textured::Value(scale));
+        self.of_numbers(TextureKind::Scale { tex, scale }, span)
+    }
+
+    /// Two numbers multiplied.
+    pub fn product(&mut self, a: Textured<f32>, b: Textured<f32>, span: Span) -> Textured<f32> {
+        match (a, b) {
+            (Textured::Value(a), Textured::Value(b)) => Textured::Value(a * b),
+            (a, Textured::Value(1.0)) => a,
+            (Textured::Value(1.0), b) => b,
+            (tex, scale) => Textured::Texture(self.of_numbers(TextureKind::Scale { tex, scale }, span)),
+        }
+    }
+
+    /// What is left of 1.
+    pub fn rest(&mut self, number: Textured<f32>, span: Span) -> Textured<f32> {
+        match number {
+            Textured::Value(value) => Textured::Value(1.0 - value),
+            amount @ Textured::Texture(_) => {
+                let textures = [1.0, 0.0].map(Textured::Value);
+                Textured::Texture(self.of_numbers(TextureKind::Mix { textures, amount }, span))
+            }
+        }
+    }
+
+    fn of_numbers(&mut self, kind: TextureKind<f32>, span: Span) -> TextureId {
         self.textures.push(TextureDesc {
             name: format!("texture{}", self.textures.len() + 1),
-            kind: ClassedTexture::Float(TextureKind::Scale {
-                tex: Textured::Texture(id),
-                scale: Textured::Value(scale),
-            }),
+            kind: ClassedTexture::Float(kind),
             world_from_texture: DAffine3::IDENTITY,
             span,
         });

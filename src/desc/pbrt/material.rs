@@ -325,6 +325,14 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         reader.float_by(&kinds::SPECULAR),
     );
     let reflected = (0.08 * specular).sqrt();
+    let as_in_mitsuba = reader.bool_by(&kinds::ADDITIVE);
+    let flatness = reader.float_textured_by(&kinds::FLATNESS);
+    if !as_in_mitsuba && !matches!(flatness, Textured::Value(value) if value == 0.0) {
+        let span = reader.span_of(kinds::FLATNESS.name);
+        reader
+            .report()
+            .warning(span, "`flatness` has no effect without `\"bool additive\" true`");
+    }
     let mut textured = |parameter: &'static Parameter| -> Textured<f32> { reader.float_textured_by(parameter) };
     PrincipledDesc {
         roughness: textured(&kinds::PRINCIPLED_ROUGHNESS),
@@ -336,8 +344,9 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         sheen_tint: textured(&kinds::SHEEN_TINT),
         clearcoat: textured(&kinds::CLEARCOAT),
         clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
+        flatness,
         base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
-        as_in_mitsuba: reader.bool_by(&kinds::ADDITIVE),
+        as_in_mitsuba,
         eta: if given {
             ((1.0 + reflected) / (1.0 - reflected)) as f32
         } else {

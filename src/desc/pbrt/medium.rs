@@ -7,7 +7,9 @@ use super::report::Report;
 use super::spectrum::Use;
 use crate::desc::kinds::media as kinds;
 use crate::desc::measured_media::MEASURED_MEDIA;
-use crate::desc::{ColorSpace, MEDIA, MediumDesc, MediumId, Parameter, ParameterKind, SpectrumDesc, SpectrumValue};
+use crate::desc::{
+    CoefficientsDesc, ColorSpace, MEDIA, MediumDesc, MediumId, Parameter, ParameterKind, SpectrumDesc, SpectrumValue,
+};
 use crate::error::Span;
 
 const LATER: [&str; 4] = ["uniformgrid", "rgbgrid", "cloud", "nanovdb"];
@@ -29,11 +31,10 @@ pub(super) fn read(mut reader: ParamReader<'_>, name: String) -> MediumDesc {
         unknown_type(reader.report(), "medium", &kind, kind_span, classes, instead);
         return vacuum(name, span);
     };
-    let [sigma_a, sigma_s] = coefficients(&mut reader);
+    let coefficients = coefficients(&mut reader);
     let le = spectrum_by(&mut reader, &kinds::LE, Use::Emission);
     let medium = MediumDesc {
-        sigma_a,
-        sigma_s,
+        coefficients,
         scale: reader.float_by(&kinds::SCALE),
         g: reader.float_by(&kinds::G),
         le: reader.has(kinds::LE.name).then_some(le),
@@ -44,8 +45,30 @@ pub(super) fn read(mut reader: ParamReader<'_>, name: String) -> MediumDesc {
     medium
 }
 
-/// Of absorption and of scattering: those of the preset if there is one.
-fn coefficients(reader: &mut ParamReader<'_>) -> [SpectrumDesc; 2] {
+/// Those of the preset if there is one.
+fn coefficients(reader: &mut ParamReader<'_>) -> CoefficientsDesc {
+    let whole = [&kinds::SIGMA_T, &kinds::ALBEDO];
+    let parts = [&kinds::SIGMA_A, &kinds::SIGMA_S, &kinds::PRESET];
+    if let Some(given) = whole.iter().find(|parameter| reader.has(parameter.name)) {
+        let sigma_t = spectrum_by(reader, &kinds::SIGMA_T, Use::Absorption);
+        let albedo = spectrum_by(reader, &kinds::ALBEDO, Use::Albedo);
+        // Taken so that each is complained about once.
+        absorption_and_scattering(reader);
+        for other in parts {
+            if !reader.has(other.name) {
+                continue;
+            }
+            let message = format!("`{}` and `{}` exclude each other", given.name, other.name);
+            let span = reader.span_of(other.name);
+            reader.report().error(span, message);
+        }
+        return CoefficientsDesc::Whole { sigma_t, albedo };
+    }
+    let [sigma_a, sigma_s] = absorption_and_scattering(reader);
+    CoefficientsDesc::Parts { sigma_a, sigma_s }
+}
+
+fn absorption_and_scattering(reader: &mut ParamReader<'_>) -> [SpectrumDesc; 2] {
     let preset = reader.choice_by(&kinds::PRESET);
     let span = reader.span_of(kinds::PRESET.name);
     let given = [&kinds::SIGMA_A, &kinds::SIGMA_S].map(|parameter| spectrum_by(reader, parameter, Use::Absorption));
@@ -78,8 +101,10 @@ fn spectrum_by(reader: &mut ParamReader<'_>, parameter: &'static Parameter, usag
 fn vacuum(name: String, span: Span) -> MediumDesc {
     MediumDesc {
         name,
-        sigma_a: constant(0.0, span),
-        sigma_s: constant(0.0, span),
+        coefficients: CoefficientsDesc::Parts {
+            sigma_a: constant(0.0, span),
+            sigma_s: constant(0.0, span),
+        },
         scale: 1.0,
         g: 0.0,
         le: None,

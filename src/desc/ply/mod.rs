@@ -1,11 +1,13 @@
 //! Meshes in the PLY format (Turk 1994): text or binary of either byte order, all of them possibly compressed with gzip.
 //!
 //! Read are the vertices' `x y z`, `nx ny nz` and texture coordinates (`u v`, `s t`, `texture_u texture_v`, `texture_s
-//! texture_t`), and the faces' `vertex_indices` or `vertex_index`; everything else is skipped. Polygons become fans of triangles
+//! texture_t`), and the faces' `vertex_indices` or `vertex_index`; further numbers if they are asked for (see
+//! [`load_with_attributes`]); everything else is skipped. Polygons become fans of triangles
 //! around their first vertex. For a planar quadrilateral that is pbrt-v4's surface too; of others pbrt makes bilinear patches.
 //!
 //! Counts in a file are checked against its length before anything is allocated by them.
 
+mod attributes;
 mod cursor;
 mod header;
 mod rows;
@@ -15,7 +17,8 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::{MeshDesc, bytes};
+use super::{AttributeDomain, MeshAttributeDesc, MeshDesc, bytes};
+use attributes::AttributeColumns;
 use cursor::Cursor;
 use header::{Element, Encoding, Scalar};
 
@@ -37,9 +40,25 @@ const LONGEST: u64 = 1 << 36;
 ///
 /// What is wrong, and in which line or at which byte.
 pub fn load(path: &Path) -> Result<PlyFile, String> {
+    read(path, false)
+}
+
+/// Reads a file with what else its vertices and faces have, under the names that Mitsuba 3 gives them: of `r g b` or `red green blue`
+/// it makes `vertex_color` or `face_color`, of `name_x name_y name_z` (or other endings) `vertex_name`. Colours of 8 or 16 bits are
+/// divided by the largest number (in Mitsuba they are not, which warns of that). Alpha and attributes of other than one or three
+/// numbers are left out.
+///
+/// # Errors
+///
+/// What is wrong, and in which line or at which byte.
+pub fn load_with_attributes(path: &Path) -> Result<PlyFile, String> {
+    read(path, true)
+}
+
+fn read(path: &Path, with_attributes: bool) -> Result<PlyFile, String> {
     let content = bytes::read(path, LONGEST).map_err(|e| e.to_string())?;
     Ok(PlyFile {
-        mesh: parse(&content)?,
+        mesh: parse_mesh(&content, with_attributes)?,
         hash: blake3::hash(&content),
     })
 }
@@ -50,6 +69,19 @@ pub fn load(path: &Path) -> Result<PlyFile, String> {
 ///
 /// What is wrong, and in which line or at which byte.
 pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
+    parse_mesh(content, false)
+}
+
+/// [`load_with_attributes`] from the content of a file, not compressed.
+///
+/// # Errors
+///
+/// What is wrong, and in which line or at which byte.
+pub fn parse_with_attributes(content: &[u8]) -> Result<MeshDesc, String> {
+    parse_mesh(content, true)
+}
+
+fn parse_mesh(content: &[u8], with_attributes: bool) -> Result<MeshDesc, String> {
     let header = header::parse(content)?;
     let mut cursor = Cursor::new(content, &header);
     let mut mesh = MeshDesc::default();
@@ -60,10 +92,17 @@ pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
             let message = format!("the file is too short for {} rows of `{}`", element.count, element.name);
             return Err(cursor.problem(&message));
         }
+        let attributes = if with_attributes {
+            attributes::of(element)
+        } else {
+            Vec::new()
+        };
         match element.name.as_str() {
-            "vertex" if mesh.positions.is_empty() => read_vertices(&mut cursor, element, header.encoding, &mut mesh)?,
+            "vertex" if mesh.positions.is_empty() => {
+                read_vertices(&mut cursor, element, header.encoding, attributes, &mut mesh)?;
+            }
             "face" if mesh.indices.is_empty() => {
-                mesh.indices = read_faces(&mut cursor, element, header.encoding)?;
+                read_faces(&mut cursor, element, header.encoding, &attributes, &mut mesh)?;
             }
             _ => skip(&mut cursor, element, header.encoding)?,
         }
@@ -90,6 +129,13 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
     }
     let finite = |values: &[Vec3]| values.iter().position(|v| !v.is_finite());
     let uv = mesh.uvs.iter().position(|v| !v.is_finite());
+    let is_finite = |attribute: &&MeshAttributeDesc| attribute.values.iter().all(|v| v.is_finite());
+    if let Some(bad) = mesh.attributes.iter().find(|attribute| !is_finite(attribute)) {
+        return Err(format!(
+            "a value of `{}` is not finite in 32-bit floating point",
+            bad.name
+        ));
+    }
     for (bad, what) in [
         (finite(&mesh.positions), "position"),
         (finite(&mesh.normals), "normal"),
@@ -109,10 +155,11 @@ struct Columns {
     position: [usize; 3],
     normal: Option<[usize; 3]>,
     uv: Option<[usize; 2]>,
+    attributes: Vec<AttributeColumns>,
 }
 
 impl Columns {
-    fn of(element: &Element) -> Result<Self, String> {
+    fn of(element: &Element, attributes: Vec<AttributeColumns>) -> Result<Self, String> {
         let find = |name: &str| {
             let mut properties = element.properties.iter();
             properties.position(|p| p.name == name && p.length.is_none())
@@ -128,6 +175,7 @@ impl Columns {
             position: find3("x", "y", "z").ok_or("the vertices have no properties `x`, `y` and `z`")?,
             normal: find3("nx", "ny", "nz"),
             uv: uv_names.iter().find_map(|(u, v)| Some([find(u)?, find(v)?])),
+            attributes,
         })
     }
 }
@@ -136,9 +184,15 @@ fn read_vertices(
     cursor: &mut Cursor,
     element: &Element,
     encoding: Encoding,
+    attributes: Vec<AttributeColumns>,
     mesh: &mut MeshDesc,
 ) -> Result<(), String> {
-    let columns = Columns::of(element)?;
+    let first = mesh.attributes.len();
+    let named = attributes
+        .iter()
+        .map(|columns| columns.named("vertex", AttributeDomain::Vertices));
+    mesh.attributes.extend(named);
+    let columns = Columns::of(element, attributes)?;
     if u32::try_from(element.count).is_err() {
         return Err("there are more vertices than 32 bits can count".to_owned());
     }
@@ -146,7 +200,7 @@ fn read_vertices(
     match element.fixed_row().filter(|_| encoding != Encoding::Ascii) {
         Some(row) => {
             let content = cursor.bytes(count.saturating_mul(row))?;
-            rows::vertices(content, row, element, &columns, encoding, mesh);
+            rows::vertices(content, row, element, &columns, encoding, mesh, first);
         }
         None => {
             mesh.positions.reserve_exact(count);
@@ -159,6 +213,7 @@ fn read_vertices(
                     }
                 }
                 push_vertex(mesh, &columns, |i| row[i]);
+                attributes::push(&mut mesh.attributes[first..], &columns.attributes, |i| row[i]);
             }
         }
     }
@@ -176,8 +231,14 @@ fn push_vertex(mesh: &mut MeshDesc, columns: &Columns, at: impl Fn(usize) -> f32
     }
 }
 
-/// The faces as triangles. Those with fewer than three vertices are left out, as pbrt leaves them.
-fn read_faces(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Result<Vec<[u32; 3]>, String> {
+/// The faces as triangles, each with the values of its face. Faces with fewer than three vertices are left out, as pbrt leaves them.
+fn read_faces(
+    cursor: &mut Cursor,
+    element: &Element,
+    encoding: Encoding,
+    attributes: &[AttributeColumns],
+    mesh: &mut MeshDesc,
+) -> Result<(), String> {
     let is_corners = |name: &str| name == "vertex_indices" || name == "vertex_index";
     let mut properties = element.properties.iter();
     let corners = properties
@@ -188,22 +249,34 @@ fn read_faces(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Res
         && let Some(triangles) = rows::triangles(content, row, encoding)
     {
         cursor.bytes(content.len())?;
-        return Ok(triangles);
+        mesh.indices = triangles;
+        return Ok(());
     }
-    let mut triangles = Vec::with_capacity(element.count as usize);
+    let first = mesh.attributes.len();
+    let named = attributes
+        .iter()
+        .map(|columns| columns.named("face", AttributeDomain::Triangles));
+    mesh.attributes.extend(named);
+    mesh.indices.reserve_exact(element.count as usize);
+    let mut row = vec![0.0; element.properties.len()];
     for _ in 0..element.count {
+        let before = mesh.indices.len();
         for (i, property) in element.properties.iter().enumerate() {
             match property.length {
                 Some(length) if i == corners => {
                     let count = cursor.index(length)?;
-                    read_fan(cursor, count, property.value, &mut triangles)?;
+                    read_fan(cursor, count, property.value, &mut mesh.indices)?;
                 }
                 Some(length) => skip_list(cursor, length, property.value)?,
-                None => cursor.skip(1, property.value)?,
+                None if attributes.is_empty() => cursor.skip(1, property.value)?,
+                None => row[i] = cursor.number(property.value)? as f32,
             }
         }
+        for _ in before..mesh.indices.len() {
+            attributes::push(&mut mesh.attributes[first..], attributes, |i| row[i]);
+        }
     }
-    Ok(triangles)
+    Ok(())
 }
 
 fn read_fan(cursor: &mut Cursor, count: usize, kind: Scalar, triangles: &mut Vec<[u32; 3]>) -> Result<(), String> {

@@ -11,7 +11,7 @@ use crate::desc::MeshDesc;
 /// Rows that one task decodes, at least.
 const SPAN: usize = 1 << 14;
 
-/// Puts the vertices of `rows` into the mesh, which has none.
+/// Puts the vertices of `rows` into the mesh, which has none, and their attributes into those of the mesh from the given one on.
 pub(super) fn vertices(
     rows: &[u8],
     row: usize,
@@ -19,6 +19,7 @@ pub(super) fn vertices(
     columns: &Columns,
     encoding: Encoding,
     mesh: &mut MeshDesc,
+    first_attribute: usize,
 ) {
     let offsets: Vec<usize> = element
         .properties
@@ -47,6 +48,11 @@ pub(super) fn vertices(
             .with_min_len(SPAN)
             .map(pair)
             .collect_into_vec(&mut mesh.uvs);
+    }
+    for (attribute, columns) in mesh.attributes[first_attribute..].iter_mut().zip(&columns.attributes) {
+        let values = |row| columns.values(|i| at(row, i)).collect::<Vec<_>>();
+        let rows = rows.par_chunks_exact(row).with_min_len(SPAN);
+        attribute.values = rows.flat_map_iter(values).collect();
     }
 }
 

@@ -2,7 +2,7 @@ use super::{Case, check};
 
 #[test]
 fn media() {
-    let cases: [Case; 11] = [
+    let cases: [Case; 13] = [
         (
             "MakeNamedMedium @\"fog\" \"float g\" 0 WorldBegin",
             "this medium has no type",
@@ -31,6 +31,16 @@ fn media() {
         (
             "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 @-1 0 ] WorldBegin",
             "must be 0 or more",
+            "",
+        ),
+        (
+            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_t\" [1 1 1] @\"rgb sigma_s\" [1 1 1] WorldBegin",
+            "`sigma_t` and `sigma_s` exclude each other",
+            "",
+        ),
+        (
+            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb albedo\" [1 @2 1] WorldBegin",
+            "between 0 and 1",
             "",
         ),
         (

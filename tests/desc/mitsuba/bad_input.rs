@@ -112,6 +112,16 @@ fn values() {
             "",
         ),
         (
+            "<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\">@<float name=\"albedo\" value=\"2\"/></medium></shape>",
+            "in [0, 1]",
+            "",
+        ),
+        (
+            "<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"exterior\"><phase type=\"hg\">@<float name=\"g\" value=\"1\"/></phase></medium></shape>",
+            "between -1 and 1",
+            "",
+        ),
+        (
             "<shape type=\"sphere\"><boolean name=\"flip_normals\" value=@\"yes\"/></shape>",
             "neither `true` nor `false`",
             "",
@@ -193,7 +203,7 @@ fn values() {
 /// What Mitsuba has and this program has not: named, and a warning with `--lenient`.
 #[test]
 fn unsupported() {
-    let cases: [Case; 7] = [
+    let cases: [Case; 9] = [
         (
             "<shape type=@\"sdfgrid\"/>",
             "the shape `sdfgrid` is not supported",
@@ -210,9 +220,19 @@ fn unsupported() {
             "diffuse",
         ),
         (
-            "<shape type=\"sphere\"><medium type=@\"homogeneous\" name=\"interior\"/></shape>",
-            "media",
-            "",
+            "<shape type=\"sphere\"><medium type=@\"heterogeneous\" name=\"interior\"/></shape>",
+            "the medium `heterogeneous` is not supported",
+            "homogeneous",
+        ),
+        (
+            "<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\"><phase type=@\"rayleigh\"/></medium></shape>",
+            "the phase `rayleigh` is not supported",
+            "isotropic",
+        ),
+        (
+            "<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\"><volume type=@\"gridvolume\" name=\"albedo\"/></medium></shape>",
+            "the volume `gridvolume` is not supported",
+            "constvolume",
         ),
         (
             "<integrator type=@\"aov\"/>",

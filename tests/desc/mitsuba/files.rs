@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use lucerna::desc::{ParseOptions, ShapeKind, load, serialized};
+use lucerna::desc::{ClassedTexture, ParseOptions, ShapeKind, TextureKind, load, serialized};
 use lucerna::error::Error;
 
 use super::super::STRICT;
@@ -145,5 +145,65 @@ fn a_serialized_mesh_at_the_end_of_all_numbers_is_refused() {
     for index in 0..2 {
         let problem = serialized::parse(&content, index).expect_err("a mesh");
         assert!(problem.contains("index of the file is damaged"), "{problem}");
+    }
+}
+
+const COLORED: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    property float r\nproperty float g\nproperty float b\nproperty float heat_0\nelement face 1\n\
+    property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0 .1\n1 0 0 0 1 0 .2\n0 1 0 0 0 1 .3\n3 0 1 2\n";
+
+/// A scene of a shape, the reflectance of which is an attribute and the opacity another.
+fn with_attributes(shape: &str, color: &str, number: &str) -> String {
+    let texture = |slot: &str, name: &str| {
+        format!(r#"<texture type="mesh_attribute" name="{slot}"><string name="name" value="{name}"/></texture>"#)
+    };
+    let (opacity, reflectance) = (texture("opacity", number), texture("reflectance", color));
+    file(&format!(
+        r#"{shape}<bsdf type="mask">{opacity}<bsdf type="diffuse">{reflectance}</bsdf></bsdf></shape>"#
+    ))
+}
+
+const COLORED_SHAPE: &str = r#"<shape type="ply"><string name="filename" value="c.ply"/>"#;
+
+#[test]
+fn attributes_of_meshes_are_textures() {
+    let text = with_attributes(COLORED_SHAPE, "vertex_color", "vertex_heat");
+    let directory = directory(&[("scene.xml", &text), ("c.ply", COLORED)]);
+    let scene = load(&directory.path().join("scene.xml"), &STRICT).unwrap_or_else(|e| panic!("{e}"));
+    let textures = scene.textures.iter().map(|texture| match &texture.kind {
+        ClassedTexture::Float(TextureKind::MeshAttribute { name, scale }) => ("number", name.as_str(), *scale),
+        ClassedTexture::Spectrum(TextureKind::MeshAttribute { name, scale }) => ("color", name.as_str(), *scale),
+        other => panic!("{other:?}"),
+    });
+    let textures: Vec<_> = textures.collect();
+    assert_eq!(textures.len(), 2);
+    assert!(textures.contains(&("number", "vertex_heat", 1.0)) && textures.contains(&("color", "vertex_color", 1.0)));
+    let ShapeKind::TriangleMesh(mesh) = &scene.shapes[0].kind else {
+        panic!("a mesh")
+    };
+    let names: Vec<_> = mesh
+        .attributes
+        .iter()
+        .map(|attribute| attribute.name.as_str())
+        .collect();
+    assert_eq!(names, ["vertex_color", "vertex_heat"]);
+}
+
+#[test]
+fn attributes_that_are_not_there_are_named() {
+    for (shape, color, number, message) in [
+        (
+            COLORED_SHAPE,
+            "vertex_colour",
+            "vertex_heat",
+            "it has `vertex_color`, `vertex_heat`",
+        ),
+        ("<shape type=\"sphere\">", "vertex_color", "vertex_color", "it has none"),
+        (COLORED_SHAPE, "vertex_color", "vertex_color", "asks for a number"),
+        (COLORED_SHAPE, "vertex_color", "heat", "begin with `vertex_` or `face_`"),
+    ] {
+        let text = with_attributes(shape, color, number);
+        let error = error_of(&[("scene.xml", &text), ("c.ply", COLORED)]);
+        assert!(error.contains(message), "{error}");
     }
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod files;
+mod media;
 mod plugins;
 
 use std::path::Path;

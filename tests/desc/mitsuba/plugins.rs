@@ -124,6 +124,28 @@ fn bsdfs_are_black_from_behind_unless_two_sided() {
 }
 
 #[test]
+fn masks_multiply_and_nothing_is_a_mask() {
+    let number = |name: &str, value: f32| format!("<float name=\"{name}\" value=\"{value}\"/>");
+    let alpha = |bsdf: &str| material(bsdf).shapes[0].alpha.clone();
+    let diffuse = "<bsdf type=\"diffuse\"/>";
+    let inner = format!("<bsdf type=\"mask\">{}{diffuse}</bsdf>", number("opacity", 0.5));
+    let outer = format!("<bsdf type=\"mask\">{}{inner}</bsdf>", number("opacity", 0.5));
+    assert_eq!(alpha(&outer), Textured::Value(0.25));
+    let blend = |first: &str, second: &str| {
+        let weight = number("weight", 0.25);
+        alpha(&format!("<bsdf type=\"blendbsdf\">{weight}{first}{second}</bsdf>"))
+    };
+    let null = "<bsdf type=\"null\"/>";
+    assert_eq!(blend(null, diffuse), Textured::Value(0.25));
+    assert_eq!(blend(diffuse, null), Textured::Value(0.75));
+    assert_eq!(blend(null, &inner), Textured::Value(0.125));
+    let textured = material(&format!(
+        "<bsdf type=\"blendbsdf\"><texture type=\"checkerboard\" name=\"weight\"/>{diffuse}{null}</bsdf>"
+    ));
+    assert!(matches!(textured.shapes[0].alpha, Textured::Texture(_)) && textured.warnings.is_empty());
+}
+
+#[test]
 fn lights_keep_their_brightness() {
     let light = |spectrum: &str| {
         let scene = scene(&format!("<emitter type=\"constant\">{spectrum}</emitter>"));

@@ -131,6 +131,7 @@ fn surface(p: Vec3, ng: Vec3, time: f32) -> SurfaceInteraction {
         dpdu: Vec3::ZERO,
         dpdv: Vec3::ZERO,
         uv: Vec2::ZERO,
+        barycentrics: Vec2::ZERO,
         wo: ng,
         footprint: 0.0,
         time,

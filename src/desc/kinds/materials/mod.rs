@@ -139,6 +139,7 @@ pub static MATERIALS: [Entry; 15] = [
             &SHEEN_TINT,
             &CLEARCOAT,
             &CLEARCOAT_GLOSS,
+            &FLATNESS,
             &ADDITIVE,
             &DISPLACEMENT,
             &NORMAL_MAP,

@@ -173,6 +173,11 @@ pub static SHEEN_TINT: Parameter =
 pub static CLEARCOAT: Parameter = Parameter::new("clearcoat", unit(0.0), "How much there is of a coat of lacquer");
 pub static CLEARCOAT_GLOSS: Parameter =
     Parameter::new("clearcoat_gloss", unit(0.0), "From a satin coat to a glossy one");
+pub static FLATNESS: Parameter = Parameter::new(
+    "flatness",
+    unit(0.0),
+    "From a diffuse base to one that looks lit from under its surface; with `additive` only",
+);
 pub static ADDITIVE: Parameter = Parameter::flag(
     "additive",
     false,

@@ -26,6 +26,7 @@ pub(super) fn triangle_mesh(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
         tangents: as_many(reader, "S", tangents, count).unwrap_or_default(),
         uvs: as_many(reader, "uv", uvs, count).unwrap_or_default(),
         indices,
+        attributes: Vec::new(),
     })))
 }
 

@@ -46,6 +46,7 @@ pub(super) fn disk(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
         height,
         radius,
         inner_radius,
+        radial_uv: reader.boolean("radialuv", false),
     };
     Some(ShapeKind::Quadric { surface, phi_max })
 }

@@ -270,6 +270,7 @@ fn put_principled(e: &mut Entity, principled: &PrincipledDesc, names: &[String])
         e.float_textured(name, value, names);
     }
     if principled.as_in_mitsuba {
-        e.boolean("additive", true);
+        e.float_textured("flatness", &principled.flatness, names)
+            .boolean("additive", true);
     }
 }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::Writer;
 use super::entity::{Entity, quoted};
+use super::{Writer, unwritable};
 use crate::desc::{
     CurveDesc, CurveKindDesc, MediumId, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind, Textured,
 };
@@ -59,7 +59,12 @@ impl Writer<'_> {
                     entity.float("radius", *radius);
                     entity
                 }
-                ShapeKind::Quadric { surface, phi_max } => quadric(surface, *phi_max),
+                ShapeKind::Quadric { surface, phi_max } => {
+                    if matches!(surface, QuadricDesc::Disk { radial_uv: true, .. }) {
+                        writer.note("Shape \"disk\" \"bool radialuv\"");
+                    }
+                    quadric(surface, *phi_max)
+                }
                 ShapeKind::BilinearMesh(patches) => bilinear_mesh(patches),
                 ShapeKind::LoopSubdivision { cage, levels } => {
                     let mut entity = Entity::new("Shape", "loopsubdiv");
@@ -68,6 +73,7 @@ impl Writer<'_> {
                     entity
                 }
                 ShapeKind::Curve(description) => curve(description),
+                ShapeKind::Tubes(_) => return Err(unwritable("a round curve")),
                 ShapeKind::DisplacedMesh { mesh, displacement } => {
                     let mut entity = Entity::new("Shape", "plymesh");
                     entity
@@ -137,12 +143,16 @@ fn quadric(surface: &QuadricDesc, phi_max: f64) -> Entity {
             height,
             radius,
             inner_radius,
+            radial_uv,
         } => {
             entity = Entity::new("Shape", "disk");
             entity
                 .float("height", height)
                 .float("radius", radius)
                 .float("innerradius", inner_radius);
+            if radial_uv {
+                entity.boolean("radialuv", true);
+            }
         }
     }
     entity.float("phimax", phi_max);

@@ -1,7 +1,7 @@
 //! Textures.
 
-use super::Writer;
 use super::entity::{Entity, transform};
+use super::{Writer, unwritable};
 use crate::desc::{
     ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, SceneDesc, SpectrumDesc, TextureDesc,
     TextureKind, Textured, WrapDesc,
@@ -73,6 +73,7 @@ impl Writer<'_> {
             TextureKind::Dots { .. } => "dots",
             TextureKind::Bilerp { .. } => "bilerp",
             TextureKind::Image(_) => "imagemap",
+            TextureKind::MeshAttribute { .. } => return Err(unwritable("a texture that is an attribute of a mesh")),
             TextureKind::Fbm(_) => "fbm",
             TextureKind::Wrinkled(_) => "wrinkled",
             TextureKind::Windy => "windy",
@@ -127,7 +128,7 @@ impl Writer<'_> {
             }
             TextureKind::Image(map) => self.image_map(e, map)?,
             TextureKind::Fbm(octaves) | TextureKind::Wrinkled(octaves) => put_octaves(e, octaves),
-            TextureKind::Windy => {}
+            TextureKind::Windy | TextureKind::MeshAttribute { .. } => {}
             TextureKind::Marble {
                 octaves,
                 scale,

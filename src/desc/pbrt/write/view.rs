@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::entity::{Entity, quoted};
 use crate::desc::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, Distribution, FilmDesc, FilmKind, FilterDesc, FilterKind,
-    GBufferSpace, Heuristic, IntegratorKind, LightSamplerKind, MeasureDesc, MediumDesc, PhotonFilter, RealisticDesc,
-    SamplerDesc, SamplerKind, SensorDesc, StopShape, Strategy, Termination, ViewDesc,
+    ApertureDesc, CameraDesc, CameraKind, CoefficientsDesc, CropDesc, Distribution, FilmDesc, FilmKind, FilterDesc,
+    FilterKind, GBufferSpace, Heuristic, IntegratorKind, LightSamplerKind, MeasureDesc, MediumDesc, PhotonFilter,
+    RealisticDesc, SamplerDesc, SamplerKind, SensorDesc, StopShape, Strategy, Termination, ViewDesc,
 };
 use crate::error::{Error, Result};
 use crate::sampling::SphereMap;
@@ -357,10 +357,17 @@ impl Writer<'_> {
 
     fn medium(&mut self, medium: &MediumDesc) -> Result<()> {
         let mut entity = Entity::new("MakeNamedMedium", &medium.name);
+        entity.string("type", "homogeneous");
+        let [(first, a), (second, b)] = match &medium.coefficients {
+            CoefficientsDesc::Parts { sigma_a, sigma_s } => [("sigma_a", sigma_a), ("sigma_s", sigma_s)],
+            CoefficientsDesc::Whole { sigma_t, albedo } => {
+                self.note("\"sigma_t\" and \"albedo\" of a medium");
+                [("sigma_t", sigma_t), ("albedo", albedo)]
+            }
+        };
         entity
-            .string("type", "homogeneous")
-            .spectrum("sigma_a", &medium.sigma_a)
-            .spectrum("sigma_s", &medium.sigma_s)
+            .spectrum(first, a)
+            .spectrum(second, b)
             .float("scale", medium.scale)
             .float("g", medium.g);
         if let Some(le) = &medium.le {

@@ -1,0 +1,429 @@
+//! Round curves: tubes of pieces, each the convex hull of two balls, as Embree and Mitsuba 3 have them. They are seen from outside only:
+//! a ray that starts within, or comes in through an open end, passes.
+//!
+//! Where a line enters a piece is where it enters the cone that touches both balls, between the circles where it touches them, or one
+//! of the balls beyond (after Quilez's round cone). In double precision, by one function for every backend.
+
+use std::f64::consts::TAU;
+
+use super::shape::LineHits;
+use super::surface::LocalSurface;
+use super::triangle::LEAST_ERROR;
+use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec3, Vec2, Vec3};
+
+/// A piece of a tube, object space.
+#[derive(Clone, Copy, Debug)]
+pub struct TubePiece {
+    /// The middles of the two balls.
+    pub ends: [Vec3; 2],
+    /// Their radii; not negative.
+    pub radii: [f32; 2],
+    /// How far along its curve they are, which is 1 - v of the texture coordinates.
+    pub along: [f32; 2],
+    /// Unit tangents of the curve at the ends, where it goes on smoothly: then the piece ends in the planes across them, and normals are
+    /// those of the curve. `None` for a straight piece, which ends with its balls.
+    pub tangents: Option<[Vec3; 2]>,
+}
+
+/// Pieces of tubes; each is a primitive.
+#[derive(Clone, Debug)]
+pub struct TubeSet {
+    pieces: Vec<TubePiece>,
+    world_from_object: DAffine3,
+    object_from_world: DAffine3,
+    flip_normal: bool,
+}
+
+/// A piece in the numbers that a line is tested with.
+struct Hull {
+    a: DVec3,
+    axis: DVec3,
+    radii: [f64; 2],
+    /// How much smaller the second radius is.
+    taper: f64,
+    /// The square of the length of the axis less that of the taper: not positive if one ball holds the other.
+    slant2: f64,
+    tangents: Option<[DVec3; 2]>,
+}
+
+/// Where a line enters a piece.
+struct Entry {
+    t: f64,
+    /// From the first end to the second, of the ball that touches the surface here.
+    fraction: f64,
+}
+
+impl Hull {
+    fn new(piece: &TubePiece) -> Self {
+        let [a, b] = piece.ends.map(Vec3::as_dvec3);
+        let radii = piece.radii.map(f64::from);
+        let (axis, taper) = (b - a, radii[0] - radii[1]);
+        Self {
+            a,
+            axis,
+            radii,
+            taper,
+            slant2: axis.length_squared() - taper * taper,
+            tangents: piece.tangents.map(|tangents| tangents.map(Vec3::as_dvec3)),
+        }
+    }
+
+    fn center(&self, fraction: f64) -> DVec3 {
+        self.a + self.axis * fraction
+    }
+
+    fn radius(&self, fraction: f64) -> f64 {
+        self.radii[0] - self.taper * fraction
+    }
+
+    /// Where the cone's circle through a point is: from 0 to `slant2` between those where it touches the balls.
+    fn height(&self, p: DVec3) -> f64 {
+        (p - self.a).dot(self.axis) - self.radii[0] * self.taper
+    }
+
+    /// The first place where the line `o + t d` comes in, `d` of unit length.
+    fn entry(&self, o: DVec3, d: DVec3) -> Option<Entry> {
+        let caps = [0, 1].map(|end| self.entry_of_ball(o, d, end));
+        let [first, second] = self.entries_of_cone(o, d);
+        let candidates = caps.into_iter().chain([first, second]).flatten();
+        candidates.min_by(|a, b| a.t.total_cmp(&b.t))
+    }
+
+    /// Into the ball at an end, beyond where the cone touches it.
+    fn entry_of_ball(&self, o: DVec3, d: DVec3, end: usize) -> Option<Entry> {
+        let fraction = end as f64;
+        let (center, radius) = (self.center(fraction), self.radii[end]);
+        let from = o - center;
+        let along = from.dot(d);
+        let discriminant = radius * radius - (from - d * along).length_squared();
+        if discriminant.is_nan() || discriminant <= 0.0 {
+            return None;
+        }
+        let t = -along - discriminant.sqrt();
+        let p = o + d * t;
+        let is_beyond = if self.slant2 <= 0.0 {
+            // The larger ball holds the smaller one.
+            (end == 0) == (self.taper > 0.0)
+        } else if end == 0 {
+            self.height(p) <= 0.0
+        } else {
+            self.height(p) >= self.slant2
+        };
+        let is_within = self.tangents.is_none_or(|tangents| {
+            let out = if end == 0 { -tangents[0] } else { tangents[1] };
+            let slope = if end == 0 { -self.taper } else { self.taper } / self.axis.length().max(f64::MIN_POSITIVE);
+            (p - center).dot(out) <= radius * (slope + 1e-6)
+        });
+        (is_beyond && is_within).then_some(Entry { t, fraction })
+    }
+
+    /// Into the cone, between where it touches the balls.
+    fn entries_of_cone(&self, o: DVec3, d: DVec3) -> [Option<Entry>; 2] {
+        let slant2 = self.slant2;
+        if slant2 <= 0.0 {
+            return [None, None];
+        }
+        let from = o - self.a;
+        let (length2, radius) = (self.axis.length_squared(), self.radii[0]);
+        let (along_o, along_d) = (self.axis.dot(from), self.axis.dot(d));
+        let a = slant2 - along_d * along_d;
+        let b = slant2 * d.dot(from) + along_d * (self.taper * radius - along_o);
+        let c = slant2 * from.length_squared() - along_o * along_o
+            + radius * (2.0 * along_o * self.taper - length2 * radius);
+        let discriminant = b * b - a * c;
+        if discriminant.is_nan() || discriminant < 0.0 {
+            return [None, None];
+        }
+        let q = -(b + discriminant.sqrt().copysign(b));
+        [c / q, q / a].map(|t| {
+            let fraction = self.height(o + d * t) / slant2;
+            if !(t.is_finite() && (0.0..=1.0).contains(&fraction)) {
+                return None;
+            }
+            let outward = o + d * t - self.center(fraction);
+            (outward.dot(d) < 0.0).then_some(Entry { t, fraction })
+        })
+    }
+}
+
+impl TubeSet {
+    /// Tubes of these pieces; `None` if the transform is singular or anything is not finite.
+    pub fn new(pieces: Vec<TubePiece>, world_from_object: DAffine3) -> Option<Self> {
+        let object_from_world = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
+        let is_finite = |piece: &TubePiece| {
+            let vectors = piece.ends.iter().chain(piece.tangents.iter().flatten());
+            vectors.into_iter().all(|v| v.is_finite()) && piece.radii.iter().chain(&piece.along).all(|x| x.is_finite())
+        };
+        pieces.iter().all(is_finite).then_some(Self {
+            pieces,
+            world_from_object,
+            object_from_world,
+            flip_normal: false,
+        })
+    }
+
+    /// With the geometric normal on the inside.
+    #[must_use]
+    pub fn with_flipped_normal(mut self, flip: bool) -> Self {
+        self.flip_normal = flip;
+        self
+    }
+
+    /// The pieces.
+    pub fn pieces(&self) -> &[TubePiece] {
+        &self.pieces
+    }
+
+    /// Bytes of its arrays.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.pieces.as_slice())
+    }
+
+    /// A box around a piece.
+    pub fn piece_bounds(&self, piece: usize) -> Bounds3 {
+        let piece = &self.pieces[piece];
+        let m = &self.world_from_object;
+        let rows = m.matrix3.transpose();
+        let reach = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (end, radius) in piece.ends.iter().zip(piece.radii) {
+            let p = m.transform_point3(end.as_dvec3());
+            let margin = reach * f64::from(radius);
+            (min, max) = (min.min(p - margin), max.max(p + margin));
+        }
+        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
+        Bounds3 {
+            min: outward(min, f32::next_down),
+            max: outward(max, f32::next_up),
+        }
+    }
+
+    /// Where the line of a ray comes into a piece from outside.
+    #[inline]
+    pub fn intersect(&self, piece: usize, origin: DVec3, direction: DVec3) -> LineHits {
+        let hull = Hull::new(&self.pieces[piece]);
+        LineHits::new(self.entry(&hull, origin, direction).map(|entry| entry.t), None)
+    }
+
+    /// The same, with the distance in units of the direction.
+    fn entry(&self, hull: &Hull, origin: DVec3, direction: DVec3) -> Option<Entry> {
+        let o = self.object_from_world.transform_point3(origin);
+        let d = self.object_from_world.transform_vector3(direction);
+        let length = d.length();
+        let d = d / length;
+        // From beside the piece, so that no digits are lost to the distance.
+        let near = (hull.center(0.5) - o).dot(d);
+        let entry = hull.entry(o + d * near, d)?;
+        Some(Entry {
+            t: (entry.t + near) / length,
+            ..entry
+        })
+    }
+
+    /// The surface where a ray meets a piece, or nearly does.
+    pub(super) fn surface(&self, piece: usize, origin: DVec3, direction: DVec3) -> LocalSurface {
+        let piece = &self.pieces[piece];
+        let hull = Hull::new(piece);
+        let o = self.object_from_world.transform_point3(origin);
+        let d = self.object_from_world.transform_vector3(direction);
+        // Where a backend saw a hit through an instance's rounded transform: the place beside the middle.
+        let (near, fraction) = match self.entry(&hull, origin, direction) {
+            Some(entry) => (o + d * entry.t, entry.fraction),
+            None => {
+                let p = o + d * ((hull.center(0.5) - o).dot(d) / d.length_squared());
+                let along = (p - hull.a).dot(hull.axis) / hull.axis.length_squared();
+                (p, if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 })
+            }
+        };
+        let center = hull.center(fraction);
+        let outward = (near - center).try_normalize().unwrap_or_else(|| -d.normalize());
+        let p = center + outward * hull.radius(fraction);
+        let axis = hull.axis.try_normalize().unwrap_or(DVec3::X);
+        let tangent = hull
+            .tangents
+            .map_or(axis, |[a, b]| a.lerp(b, fraction).try_normalize().unwrap_or(axis));
+        let shading = match hull.tangents {
+            None => outward,
+            Some(_) => smooth_normal(outward, tangent, hull.taper / hull.axis.length()),
+        };
+        let sign = if self.flip_normal { -1.0 } else { 1.0 };
+        let normal = |n: DVec3| (self.object_from_world.matrix3.transpose() * n).normalize() * sign;
+        let to_world = |v: DVec3| self.world_from_object.transform_vector3(v).as_vec3();
+        let along = piece.along.map(f64::from);
+        let per_along = 1.0 / (along[1] - along[0]);
+        LocalSurface {
+            p: self.world_from_object.transform_point3(p),
+            error: LEAST_ERROR * f64::from(self.size(piece)),
+            ng: normal(outward),
+            ns: normal(shading).as_vec3(),
+            dpdu: to_world(tangent.cross(p - center) * TAU),
+            dpdv: to_world(-(hull.axis - outward * hull.taper) * per_along),
+            uv: Vec2::new(
+                turn(outward, tangent) as f32,
+                (1.0 - (along[0] + (along[1] - along[0]) * fraction)) as f32,
+            ),
+            barycentrics: Vec2::ZERO,
+        }
+    }
+
+    /// How large a piece is in the world, about.
+    fn size(&self, piece: &TubePiece) -> f32 {
+        let scale = self.world_from_object.matrix3.to_cols_array().map(f64::abs);
+        let scale = scale.into_iter().fold(0.0, f64::max) as f32;
+        scale * ((piece.ends[1] - piece.ends[0]).length() + piece.radii[0] + piece.radii[1])
+    }
+}
+
+/// The normal of a curve's tube, which gets thinner by `slope`, beside that of a piece of it.
+fn smooth_normal(outward: DVec3, tangent: DVec3, slope: f64) -> DVec3 {
+    let across = outward - tangent * tangent.dot(outward);
+    match across.try_normalize() {
+        Some(across) => (across * (1.0 - slope * slope).max(0.0).sqrt() + tangent * slope).normalize(),
+        None => outward,
+    }
+}
+
+/// How far around the axis a direction is, in [0, 1], as Mitsuba counts: from where the z axis of the object's space is a quarter.
+fn turn(outward: DVec3, tangent: DVec3) -> f64 {
+    let up = (DVec3::Z - tangent * tangent.z).try_normalize().unwrap_or(DVec3::Y);
+    let beside = up.cross(tangent);
+    let turn = up.dot(outward).atan2(beside.dot(outward)) / TAU;
+    if turn < 0.0 { turn + 1.0 } else { turn }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn straight(ends: [Vec3; 2], radii: [f32; 2]) -> TubeSet {
+        let piece = TubePiece {
+            ends,
+            radii,
+            along: [0.0, 1.0],
+            tangents: None,
+        };
+        TubeSet::new(vec![piece], DAffine3::IDENTITY).unwrap()
+    }
+
+    /// What a march along the line says, by the distance to the hull of two balls: the least over the balls between them.
+    fn marched(tube: &TubeSet, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let hull = Hull::new(&tube.pieces[0]);
+        let distance = |p: DVec3| {
+            let at = |f: f64| (p - hull.center(f)).length() - hull.radius(f);
+            (0..=4000)
+                .map(|i| at(f64::from(i) / 4000.0))
+                .fold(f64::INFINITY, f64::min)
+        };
+        let mut t = 0.0;
+        for _ in 0..2000 {
+            let left = distance(origin + direction * t);
+            if left < 1e-7 {
+                return Some(t);
+            }
+            t += left;
+            if t > 20.0 {
+                return None;
+            }
+        }
+        // It grazes.
+        None
+    }
+
+    #[test]
+    fn lines_come_in_where_the_distance_to_the_hull_is_none() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        let mut vector = || DVec3::new(random(), random(), random());
+        let mut hits = 0;
+        for case in 0..300 {
+            let ends = [vector(), vector()].map(DVec3::as_vec3);
+            // Balls inside each other are among them.
+            let radii = [
+                0.02 + 0.5 * (case % 7) as f32 / 7.0,
+                0.02 + 0.5 * (case % 5) as f32 / 5.0,
+            ];
+            let tube = straight(ends, radii);
+            let origin = vector().normalize() * 4.0;
+            let direction = (0.5 * vector() - origin).normalize();
+            let expected = marched(&tube, origin, direction);
+            let found = tube.intersect(0, origin, direction).iter().next();
+            match (found, expected) {
+                (Some(t), Some(expected)) => {
+                    hits += 1;
+                    assert!((t - expected).abs() < 2e-3, "case {case}: {t}, not {expected}");
+                    let surface = tube.surface(0, origin, direction);
+                    assert!((surface.p - (origin + direction * t)).length() < 1e-9);
+                    assert!(surface.ng.dot(direction) <= 1e-9);
+                }
+                (None, None) => {}
+                // Only a graze may be seen by one of them.
+                (found, expected) => {
+                    let t = found.or(expected).unwrap();
+                    let surface = tube.surface(0, origin, direction);
+                    let cos = surface.ng.dot(direction).abs();
+                    assert!(cos < 0.05, "case {case}: one of them sees none at {t}, cosine {cos}");
+                }
+            }
+        }
+        assert!(hits > 100, "{hits}");
+    }
+
+    #[test]
+    fn nothing_is_seen_from_inside_or_through_an_open_end() {
+        let closed = straight([Vec3::ZERO, Vec3::X], [0.25, 0.25]);
+        assert!(
+            closed
+                .intersect(0, DVec3::new(-2.0, 0.0, 0.0), DVec3::X)
+                .iter()
+                .eq([1.75])
+        );
+        // Behind the origin: the ray began inside.
+        let from_inside = closed.intersect(0, DVec3::new(0.5, 0.0, 0.0), DVec3::X);
+        assert!(from_inside.iter().all(|t| t < 0.0));
+        let piece = TubePiece {
+            tangents: Some([Vec3::X; 2]),
+            ..closed.pieces[0]
+        };
+        let open = TubeSet::new(vec![piece], DAffine3::IDENTITY).unwrap();
+        assert!(
+            open.intersect(0, DVec3::new(-2.0, 0.1, 0.0), DVec3::X)
+                .iter()
+                .next()
+                .is_none()
+        );
+        let side = open.intersect(0, DVec3::new(0.5, 2.0, 0.0), DVec3::NEG_Y);
+        assert!(side.iter().eq([1.75]));
+    }
+
+    /// Points, normals and texture coordinates that Mitsuba 3.9.1 gives for the first piece of a curve of three.
+    #[test]
+    fn surfaces_are_those_of_mitsuba() {
+        let mut tube = straight([Vec3::ZERO, Vec3::new(1.0, 0.2, 0.1)], [0.3, 0.2]);
+        tube.pieces[0].along = [0.0, 1.0 / 3.0];
+        for (origin, direction, t, normal, uv) in [
+            (
+                DVec3::new(0.5, 0.05, 5.0),
+                DVec3::NEG_Z,
+                4.70484,
+                DVec3::new(0.040_159, -0.191_165, 0.980_736),
+                Vec2::new(0.281_44, 1.0 - 0.163_307),
+            ),
+            (
+                DVec3::new(0.5, 5.0, 0.0),
+                DVec3::NEG_Y,
+                4.65433,
+                DVec3::new(-0.074_135, 0.975_124, -0.208_896),
+                Vec2::new(0.964_612, 1.0 - 0.172_799),
+            ),
+        ] {
+            let surface = tube.surface(0, origin, direction);
+            assert!((surface.p - (origin + direction * t)).length() < 1e-5);
+            // Embree interpolates the normal along the cone, with single precision.
+            assert!((surface.ng - normal).length() < 0.02, "{} {normal}", surface.ng);
+            assert!((surface.uv - uv).length() < 2e-3, "{} {uv}", surface.uv);
+        }
+    }
+}
