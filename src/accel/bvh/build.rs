@@ -21,21 +21,22 @@ pub struct BuildParams<'a> {
     pub corners: Option<&'a dyn Corners>,
 }
 
-/// A binary tree. There are about as many as triangles, while memory is scarcest: so it has no more than is asked for.
-#[derive(Debug)]
-pub enum Binary {
+/// A node of a binary tree, which is a list of them: what is below a node precedes it, that of its first child, then that of its second;
+/// the root is the last. Parts of it can be joined as they are.
+#[derive(Clone, Copy, Debug)]
+pub enum BinaryNode {
     /// Some of the items, which the build has reordered.
     Leaf(Leaf),
-    /// Two trees.
+    /// Two trees, of which the second's root is just before.
     Inner {
         /// Half of the area of the box around both, without overflow.
         half_area: f64,
-        /// Them.
-        children: Box<[Binary; 2]>,
+        /// How far before the first's root is.
+        back: u32,
     },
 }
 
-const _: () = assert!(size_of::<Binary>() == 16);
+const _: () = assert!(size_of::<BinaryNode>() == 16);
 
 /// Items one after another.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +66,7 @@ const MOST_FRAGMENTS: f64 = 0.3;
 
 /// Builds a tree over `items`, of which there is at least one; they may become more, with gaps between those of different leaves. With a
 /// box around all.
-pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> (Binary, Bounds3) {
+pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> (Vec<BinaryNode>, Bounds3) {
     let extent = bins::extent_of(items);
     let count = items.len();
     if params.corners.is_some() {
@@ -76,7 +77,8 @@ pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> (Binary, Bounds
         params,
         least_overlap: extent.bounds.half_area() * spatial::LEAST_OVERLAP,
     };
-    let tree = builder.range(items, Place { first: 0, level: 0 }, count, extent);
+    let mut tree = Vec::new();
+    builder.range(items, Place { first: 0, level: 0 }, count, extent, &mut tree);
     (tree, extent.bounds.bounds())
 }
 
@@ -102,13 +104,14 @@ struct Divided {
 }
 
 impl Builder<'_> {
-    /// A tree over the first `count` items of a range; the rest of it is room for fragments.
-    fn range(&self, items: &mut [Item], place: Place, count: usize, extent: Extent) -> Binary {
+    /// Adds a tree over the first `count` items of a range; the rest of it is room for fragments.
+    fn range(&self, items: &mut [Item], place: Place, count: usize, extent: Extent, tree: &mut Vec<BinaryNode>) {
         if is_leaf(&items[..count], self.params.triangles) {
-            return Binary::Leaf(Leaf {
+            tree.push(BinaryNode::Leaf(Leaf {
                 first: place.first as u32,
                 count: count as u32,
-            });
+            }));
+            return;
         }
         let Divided {
             counts,
@@ -120,17 +123,15 @@ impl Builder<'_> {
             first,
             level: place.level + 1,
         };
-        let mut build_left = || self.range(left, at(place.first), counts[0], extents[0]);
-        let mut build_right = || self.range(right, at(place.first + middle), counts[1], extents[1]);
-        let (left, right) = if count > LEAST_PARALLEL {
-            rayon::join(build_left, build_right)
-        } else {
-            (build_left(), build_right())
-        };
-        Binary::Inner {
-            half_area: extent.bounds.half_area(),
-            children: Box::new([left, right]),
-        }
+        let build_left = |tree: &mut _| self.range(left, at(place.first), counts[0], extents[0], tree);
+        let build_right = |tree: &mut _| self.range(right, at(place.first + middle), counts[1], extents[1], tree);
+        join(
+            count > LEAST_PARALLEL,
+            extent.bounds.half_area(),
+            tree,
+            build_left,
+            build_right,
+        );
     }
 
     /// Reorders items into two sets that are not empty.
@@ -185,6 +186,31 @@ impl Builder<'_> {
             middle,
         })
     }
+}
+
+/// Adds a node to a tree, and what two builders add below it, in parallel or one after the other.
+pub fn join(
+    is_parallel: bool,
+    half_area: f64,
+    tree: &mut Vec<BinaryNode>,
+    left: impl FnOnce(&mut Vec<BinaryNode>) + Send,
+    right: impl FnOnce(&mut Vec<BinaryNode>) + Send,
+) {
+    let second = if is_parallel {
+        let mut other = Vec::new();
+        rayon::join(|| left(tree), || right(&mut other));
+        let first = tree.len();
+        tree.append(&mut other);
+        tree.len() - first
+    } else {
+        left(tree);
+        let first = tree.len();
+        right(tree);
+        tree.len() - first
+    };
+    // There are fewer than two nodes for each item.
+    let back = second as u32 + 1;
+    tree.push(BinaryNode::Inner { half_area, back });
 }
 
 /// Where the second part of a range begins that has so many items: room is shared by number.
@@ -242,21 +268,14 @@ mod tests {
     use super::*;
     use crate::math::Vec3;
 
-    fn levels(tree: &Binary) -> u32 {
-        match tree {
-            Binary::Leaf(_) => 1,
-            Binary::Inner { children, .. } => 1 + levels(&children[0]).max(levels(&children[1])),
+    fn levels(tree: &[BinaryNode], root: usize) -> u32 {
+        match tree[root] {
+            BinaryNode::Leaf(_) => 1,
+            BinaryNode::Inner { back, .. } => 1 + levels(tree, root - back as usize).max(levels(tree, root - 1)),
         }
     }
 
-    fn leaves(tree: &Binary, out: &mut Vec<Range<usize>>) {
-        match tree {
-            Binary::Leaf(leaf) => out.push(leaf.range()),
-            Binary::Inner { children, .. } => children.iter().for_each(|child| leaves(child, out)),
-        }
-    }
-
-    fn check(mut items: Vec<Item>) -> Binary {
+    fn check(mut items: Vec<Item>) {
         let count = items.len();
         let params = BuildParams {
             bins: 16,
@@ -264,11 +283,12 @@ mod tests {
             corners: None,
         };
         let (tree, _) = build(&mut items, &params);
-        assert!(levels(&tree) <= MOST_LEVELS, "{} levels", levels(&tree));
-        let mut ranges = Vec::new();
-        leaves(&tree, &mut ranges);
+        let levels = levels(&tree, tree.len() - 1);
+        assert!(levels <= MOST_LEVELS, "{levels} levels");
         let mut next = 0;
-        for range in ranges {
+        for node in &tree {
+            let BinaryNode::Leaf(leaf) = node else { continue };
+            let range = leaf.range();
             assert_eq!(range.start, next);
             assert!((1..=LANES).contains(&range.len()));
             next = range.end;
@@ -277,7 +297,6 @@ mod tests {
         let mut seen: Vec<u32> = items.iter().map(Item::index).collect();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(i, &index)| i as u32 == index));
-        tree
     }
 
     fn item(index: usize, min: Vec3, max: Vec3) -> Item {

@@ -10,7 +10,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::bins::extent_of;
-use super::build::{Binary, LEAST_PARALLEL, Leaf, MOST_LEVELS, is_leaf};
+use super::build::{BinaryNode, LEAST_PARALLEL, Leaf, MOST_LEVELS, is_leaf, join};
 use super::item::{Box4, Extent, Item};
 use crate::math::{Bounds3, Vec3};
 
@@ -41,7 +41,7 @@ struct Pair {
 
 /// Builds a tree over `items`, of which there is at least one, and puts them into another order. `None` if the tree would be too deep, or
 /// take too long, for boxes of unusual sizes. With a box around all. Of `triangles` see [`BuildParams`](super::build::BuildParams).
-pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<(Binary, Bounds3)> {
+pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<(Vec<BinaryNode>, Bounds3)> {
     let codes = sort(items);
     let mut leaves = Vec::with_capacity(items.len() / 2);
     divide(items, &codes, 0..items.len(), triangles, &mut leaves);
@@ -68,7 +68,12 @@ pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<(Binary, Bounds3)>
         }
     }
     let Cluster { bounds, node: root } = *clusters.first()?;
-    (tree.levels(root) <= MOST_LEVELS).then(|| (tree.binary(root), bounds.bounds()))
+    if tree.levels(root) > MOST_LEVELS {
+        return None;
+    }
+    let mut nodes = Vec::new();
+    tree.binary(root, &mut nodes);
+    Some((nodes, bounds.bounds()))
 }
 
 fn bounds_of(items: &[Item], leaf: Leaf) -> Box4 {
@@ -218,20 +223,19 @@ impl Tree {
         next
     }
 
-    /// The tree below a node.
-    fn binary(&self, node: u32) -> Binary {
+    /// Adds the tree below a node.
+    fn binary(&self, node: u32, out: &mut Vec<BinaryNode>) {
         let Some(pair) = self.pair(node) else {
-            return Binary::Leaf(self.leaves[node as usize]);
+            out.push(BinaryNode::Leaf(self.leaves[node as usize]));
+            return;
         };
         let [left, right] = pair.children;
-        let children = if pair.leaves as usize > LEAST_PARALLEL {
-            rayon::join(|| self.binary(left), || self.binary(right))
-        } else {
-            (self.binary(left), self.binary(right))
-        };
-        Binary::Inner {
-            half_area: pair.bounds.half_area(),
-            children: Box::new(children.into()),
-        }
+        join(
+            pair.leaves as usize > LEAST_PARALLEL,
+            pair.bounds.half_area(),
+            out,
+            |out| self.binary(left, out),
+            |out| self.binary(right, out),
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::build::{self, Binary, BuildParams, Leaf};
+use super::build::{self, BinaryNode, BuildParams, Leaf};
 use super::collapse::collapse;
 use super::item::Item;
 use super::leaf::{Block, FixedBlock, LANES, MovingBlock};
@@ -264,7 +264,7 @@ fn moving_tree(world: &World, names: &[(GeometryId, PrimitiveId)], segment: usiz
 
 /// A binary tree, a box around all that is in it, and the items, where its leaves say.
 struct Built {
-    tree: Binary,
+    tree: Vec<BinaryNode>,
     bounds: Bounds3,
     items: Vec<Item>,
 }
