@@ -386,8 +386,11 @@ fn a_written_scene_gives_the_same_bits() {
     let file = folder.path().join("again.pbrt");
     let everything = everything("PixelFilter \"mitchell\" \"float xradius\" 1.7");
     let fog = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fog.pbrt")).expect("a scene");
-    for text in [everything, fog] {
-        let desc = parse(&text);
+    let mitsuba = {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/seeds/mitsuba/materials.xml");
+        load(&path, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+    };
+    for desc in [parse(&everything), parse(&fog), mitsuba] {
         lucerna::desc::pbrt::write(&desc, &file).unwrap_or_else(|e| panic!("{e}"));
         let again = load(&file, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
         let overrides = ViewOverrides {

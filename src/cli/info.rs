@@ -56,7 +56,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
         lenient: args.lenient,
         defines: args.defines.clone(),
     };
-    let desc = desc::load(&args.scene, &options)?;
+    let mut desc = desc::load(&args.scene, &options)?;
     let channel = if args.json { Channel::Nobody } else { Channel::Person };
     Reporter {
         channel,
@@ -73,7 +73,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
         },
         ..SceneOptions::default()
     };
-    let scene = Scene::build(&desc, &options)?;
+    let scene = Scene::build_taking_shapes(&mut desc, &options)?;
     let info = SceneInfo::new(&args.scene.display().to_string(), &desc, &scene);
     if args.json {
         return print_json(&info);

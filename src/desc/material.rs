@@ -121,6 +121,19 @@ pub enum MaterialKind {
     Hair(HairDesc),
 }
 
+impl MaterialKind {
+    /// The materials that it is made of.
+    pub fn parts(&self) -> impl Iterator<Item = MaterialId> {
+        let parts = match self {
+            Self::Mix { materials: [a, b], .. } => [Some(*a), Some(*b)],
+            Self::Sided { front, back } => [*front, *back],
+            Self::Tinted { material, .. } => [Some(*material), None],
+            _ => [None; 2],
+        };
+        parts.into_iter().flatten()
+    }
+}
+
 /// The parameters of pbrt-v4's `hair`.
 #[derive(Clone, Debug)]
 pub struct HairDesc {

@@ -19,6 +19,9 @@
 
 pub mod bare;
 mod bytes;
+mod camera;
+mod degenerate;
+mod film;
 mod images;
 mod integrator;
 mod kinds;
@@ -46,6 +49,8 @@ use crate::error::{Diagnostic, Error, Result, SourceMap, Span};
 
 pub use crate::sampling::SamplerKind;
 pub use crate::spectrum::ColorSpace;
+pub use camera::{ApertureDesc, CameraDesc, CameraKind, LensSurface, RealisticDesc, StopShape};
+pub use film::{CropDesc, FilmDesc, FilmKind, GBufferSpace, MeasureDesc, PixelRect, SensorDesc, SpectralBins};
 pub use integrator::{
     Distribution, Heuristic, IntegratorDesc, IntegratorKind, KajiyaDesc, LightSamplerKind, OcclusionDesc, PathDesc,
     PhotonDesc, PhotonFilter, SppmDesc, Strategy, Term, Termination, Terms,
@@ -69,10 +74,7 @@ pub use texture::{
     ClassedTexture, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, OctavesDesc, TextureClass,
     TextureDesc, TextureId, TextureKind, Textured, WrapDesc, color_space_of,
 };
-pub use view::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilmKind, FilterDesc, FilterKind, GBufferSpace,
-    LensSurface, MeasureDesc, PixelRect, RealisticDesc, SamplerDesc, SensorDesc, SpectralBins, StopShape, ViewDesc,
-};
+pub use view::{FilterDesc, FilterKind, SamplerDesc, ViewDesc};
 
 /// A whole scene, as its file describes it.
 ///
@@ -206,7 +208,7 @@ const EXTENSIONS: &str = ".pbrt (pbrt-v4), .xml (Mitsuba 3), .ply or .obj; .pbrt
 /// [`Error::Usage`] if its extension is not known.
 pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
+    let mut scene = if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
     } else if name.ends_with(".xml") {
         mitsuba::load(path, options)
@@ -217,5 +219,7 @@ pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
             "{}: not a scene file that Lucerna reads (expected the extension {EXTENSIONS})",
             path.display()
         )))
-    }
+    }?;
+    degenerate::warn(&mut scene);
+    Ok(scene)
 }

@@ -132,7 +132,19 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// All fields of bytes or of numbers in single precision, by name.
+/// The fields that are read. Others may be there, any number of them over the same bytes.
+const FIELDS: [&str; 8] = [
+    "phi_i",
+    "theta_i",
+    "wavelengths",
+    "ndf",
+    "sigma",
+    "vndf",
+    "luminance",
+    "spectra",
+];
+
+/// The fields that are read, of bytes or of numbers in single precision, by name.
 fn fields(bytes: &[u8]) -> Result<HashMap<String, Tensor>, String> {
     let mut cursor = Cursor { bytes, at: 0 };
     if cursor.take(HEADER.len())? != HEADER {
@@ -153,7 +165,12 @@ fn fields(bytes: &[u8]) -> Result<HashMap<String, Tensor>, String> {
         for _ in 0..axes {
             shape.push(usize::try_from(cursor.number(8)?).map_err(|e| e.to_string())?);
         }
-        if let Some(tensor) = tensor(bytes, kind, offset, shape)? {
+        if fields.contains_key(&name) {
+            return Err(format!("the field `{name}` is there twice"));
+        }
+        if FIELDS.contains(&name.as_str())
+            && let Some(tensor) = tensor(bytes, kind, offset, shape)?
+        {
             fields.insert(name, tensor);
         }
     }

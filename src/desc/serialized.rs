@@ -138,7 +138,7 @@ fn start(content: &[u8], index: u32) -> Result<usize, String> {
     offset[..bytes].copy_from_slice(&content[at..at + bytes]);
     usize::try_from(u64::from_le_bytes(offset))
         .ok()
-        .filter(|&start| start + 4 <= at)
+        .filter(|start| start.checked_add(4).is_some_and(|end| end <= at))
         .ok_or_else(|| "the index of the file is damaged".to_owned())
 }
 

@@ -150,6 +150,19 @@ pub enum TextureKind<V> {
     },
 }
 
+impl<V> TextureKind<V> {
+    /// From the surface to its texture coordinates, if it has any.
+    pub fn mapping(&self) -> Option<&MappingDesc> {
+        match self {
+            Self::Checkerboard2 { mapping, .. } | Self::Dots { mapping, .. } | Self::Bilerp { mapping, .. } => {
+                Some(mapping)
+            }
+            Self::Image(map) => Some(&map.mapping),
+            _ => None,
+        }
+    }
+}
+
 /// From a surface to texture coordinates (s, t).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MappingDesc {

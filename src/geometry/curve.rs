@@ -5,6 +5,8 @@
 //! half the width, between the perpendiculars at its ends (Nakamaru and Ohno 2002; Pharr, Jakob and Humphreys 2023, section 6.7).
 //! Here that is done in double precision, by one function for every backend, so that all see the same surface.
 
+mod bezier;
+
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use super::shape::LineHits;
@@ -162,7 +164,7 @@ impl CurveSet {
     /// A box around a primitive.
     pub fn primitive_bounds(&self, primitive: usize) -> Bounds3 {
         let (segment, u) = self.part(primitive);
-        let points = between(&segment.points.map(Vec3::as_dvec3), u);
+        let points = bezier::between(&segment.points.map(Vec3::as_dvec3), u);
         let half = 0.5 * u.map(|u| width_at(segment, u)).into_iter().fold(0.0, f64::max);
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let m = &self.world_from_object;
@@ -190,7 +192,7 @@ impl CurveSet {
         let o = self.object_from_world.transform_point3(origin);
         let d = self.object_from_world.transform_vector3(direction);
         let (segment, u) = self.part(primitive);
-        let points = between(&segment.points.map(Vec3::as_dvec3), u);
+        let points = bezier::between(&segment.points.map(Vec3::as_dvec3), u);
         let frame = RayFrame::new(o, d, points[3] - points[0]);
         let points = points.map(|p| frame.point(p));
         let mut nearest = Nearest::default();
@@ -217,7 +219,7 @@ impl CurveSet {
         let frame = RayFrame::new(o, d, points[3] - points[0]);
         // Where a backend saw a hit through an instance's rounded transform: the nearest point of the axis.
         let hit = found.copied().unwrap_or_else(|| nearest_to_ray(segment, range, &frame));
-        let dpdu = match derivative(&points, hit.uv.x) {
+        let dpdu = match bezier::derivative(&points, hit.uv.x) {
             DVec3::ZERO => points[3] - points[0],
             dpdu => dpdu,
         };
@@ -267,7 +269,7 @@ impl Piece<'_> {
             return;
         }
         let middle = 0.5 * (u[0] + u[1]);
-        for (half, u) in halves(points).iter().zip([[u[0], middle], [middle, u[1]]]) {
+        for (half, u) in bezier::halves(points).iter().zip([[u[0], middle], [middle, u[1]]]) {
             let widest = u.map(|u| width_at(self.segment, u)).into_iter().fold(0.0, f64::max);
             if is_crossed(half, widest) {
                 self.divide(half, u, depth - 1, nearest);
@@ -293,12 +295,12 @@ impl Piece<'_> {
         if self.kind == CurveKind::Ribbon {
             width *= normal_at(self.segment, u).dot(self.frame.z).abs();
         }
-        let axis = bezier(points, w);
+        let axis = bezier::point(points, w);
         let distance = axis.truncate().length();
         if distance > 0.5 * width || axis.z < 0.0 || width == 0.0 {
             return None;
         }
-        let along = derivative(points, w);
+        let along = bezier::derivative(points, w);
         let side = (-along.x * axis.y + axis.x * along.y).signum();
         Some(CurveHit {
             t: axis.z / self.frame.length,
@@ -343,57 +345,20 @@ fn normal_at(segment: &CurveSegment, u: f64) -> DVec3 {
     (a * ((1.0 - u) * angle).sin() + b * (u * angle).sin()) / sin
 }
 
-/// The point at `u`.
-fn bezier(points: &[DVec3; 4], u: f64) -> DVec3 {
-    let [a, b, c, d] = *points;
-    let (p, q, r) = (a.lerp(b, u), b.lerp(c, u), c.lerp(d, u));
-    p.lerp(q, u).lerp(q.lerp(r, u), u)
-}
-
-fn derivative(points: &[DVec3; 4], u: f64) -> DVec3 {
-    let [a, b, c, d] = *points;
-    let (p, q, r) = (b - a, c - b, d - c);
-    3.0 * p.lerp(q, u).lerp(q.lerp(r, u), u)
-}
-
-/// The control points of both halves (de Casteljau).
-fn halves(points: &[DVec3; 4]) -> [[DVec3; 4]; 2] {
-    let [a, b, c, d] = *points;
-    let (p, q, r) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d));
-    let (s, t) = (0.5 * (p + q), 0.5 * (q + r));
-    let middle = 0.5 * (s + t);
-    [[a, p, s, middle], [middle, t, r, d]]
-}
-
-/// The control points of the part between two parameters: the blossom at all mixtures of them.
-fn between(points: &[DVec3; 4], [u0, u1]: [f64; 2]) -> [DVec3; 4] {
-    let blossom = |x: f64, y: f64, z: f64| {
-        let [a, b, c, d] = *points;
-        let (p, q, r) = (a.lerp(b, x), b.lerp(c, x), c.lerp(d, x));
-        p.lerp(q, y).lerp(q.lerp(r, y), z)
-    };
-    [
-        blossom(u0, u0, u0),
-        blossom(u0, u0, u1),
-        blossom(u0, u1, u1),
-        blossom(u1, u1, u1),
-    ]
-}
-
 /// The place of the axis, of some along a part of a segment, that is nearest to a ray.
 fn nearest_to_ray(segment: &CurveSegment, [u0, u1]: [f64; 2], frame: &RayFrame) -> CurveHit {
     const STEPS: u32 = 16;
     let points = segment.points.map(|p| frame.point(p.as_dvec3()));
     let at = |i: u32| {
         let u = u0 + (u1 - u0) * f64::from(i) / f64::from(STEPS);
-        (u, bezier(&points, u))
+        (u, bezier::point(&points, u))
     };
     let distance = |p: &(f64, DVec3)| p.1.truncate().length_squared();
     let (u, axis) = (0..=STEPS)
         .map(at)
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
         .unwrap_or((u0, points[0]));
-    let along = derivative(&points, u);
+    let along = bezier::derivative(&points, u);
     let side = -along.x * axis.y + axis.x * along.y;
     CurveHit {
         t: axis.z / frame.length,
@@ -403,152 +368,4 @@ fn nearest_to_ray(segment: &CurveSegment, [u0, u1]: [f64; 2], frame: &RayFrame) 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn segment() -> CurveSegment {
-        CurveSegment {
-            points: [
-                Vec3::new(-1.0, 0.0, 0.0),
-                Vec3::new(-0.3, 0.8, 0.2),
-                Vec3::new(0.4, -0.6, -0.3),
-                Vec3::new(1.0, 0.2, 0.1),
-            ],
-            widths: [0.2, 0.05],
-            normals: [Vec3::Z, Vec3::new(0.0, 0.6, 0.8)],
-        }
-    }
-
-    fn set(kind: CurveKind, depth: u32) -> CurveSet {
-        CurveSet::new(vec![segment()], kind, depth, DAffine3::IDENTITY).unwrap()
-    }
-
-    /// All that a ray meets of a set, nearest first.
-    fn nearest(set: &CurveSet, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
-        (0..set.primitive_count())
-            .filter_map(|i| set.intersect(i, origin, direction).from(0.0).map(|t| (i, t)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    #[test]
-    fn rays_meet_what_is_within_half_the_width_of_the_axis() {
-        let points = segment().points.map(Vec3::as_dvec3);
-        let direction = DVec3::new(0.1, -0.2, -3.0);
-        for kind in [CurveKind::Flat, CurveKind::Cylinder] {
-            for depth in [0, 3] {
-                let set = set(kind, depth);
-                for i in 1..39 {
-                    // Not where parts meet: of what goes through the end of a part rounding decides.
-                    let u = (f64::from(i) + 0.37) / 40.0;
-                    let axis = bezier(&points, u);
-                    let across = direction.cross(derivative(&points, u)).normalize();
-                    let half = 0.5 * width_at(&segment(), u);
-                    for (share, is_met) in [(-1.1, false), (-0.85, true), (0.0, true), (0.85, true), (1.1, false)] {
-                        let target = axis + across * (half * share);
-                        let found = nearest(&set, target - 2.0 * direction, direction);
-                        assert_eq!(found.is_some(), is_met, "{kind:?} {depth} {u} {share}");
-                        let Some((part, t)) = found else { continue };
-                        assert!((t - 2.0).abs() < 0.01, "{t}");
-                        let surface = set.surface(part, target - 2.0 * direction, direction, 0.0);
-                        // Flat within a twentieth of the greatest width, so that coordinates are off by as much of the width here.
-                        let v = f64::from(surface.uv.y);
-                        let off = 0.05 * 0.2 / (2.0 * half);
-                        assert!(
-                            (v - (0.5 + 0.5 * share)).abs() < off || (v - (0.5 - 0.5 * share)).abs() < off,
-                            "{kind:?} {depth} {u} {share}: {v}"
-                        );
-                        assert!((f64::from(surface.uv.x) - u).abs() < 0.05);
-                        assert!(
-                            surface
-                                .dpdu
-                                .as_dvec3()
-                                .normalize()
-                                .dot(derivative(&points, u).normalize())
-                                > 0.99
-                        );
-                        assert!(surface.ng.dot(surface.dpdu.as_dvec3()).abs() < 1e-6);
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn parts_are_the_whole() {
-        let (whole, parts) = (set(CurveKind::Flat, 0), set(CurveKind::Flat, 4));
-        let mut hits = 0;
-        for i in 0..4000 {
-            let a = f64::from(i) * 0.37;
-            let target = DVec3::new((1.7 * a).sin(), 0.3 * (2.3 * a).cos(), 0.0);
-            let direction = DVec3::new(0.3 * a.cos(), 0.3 * a.sin(), -1.0);
-            let [a, b] = [&whole, &parts].map(|set| nearest(set, target - 3.0 * direction, direction).map(|(_, t)| t));
-            // They are divided in other places: at the rim they may differ.
-            hits += usize::from(a.is_some());
-            if let (Some(a), Some(b)) = (a, b) {
-                assert!((a - b).abs() < 0.02);
-            }
-        }
-        assert!(hits > 200);
-    }
-
-    #[test]
-    fn ribbons_turn_with_their_normals() {
-        let set = set(CurveKind::Ribbon, 2);
-        // At the start the normal is z: seen along y its edge is met only within what the turning leaves.
-        let p = bezier(&segment().points.map(Vec3::as_dvec3), 0.05);
-        let wide = p + DVec3::new(0.0, 0.0, 0.05);
-        assert!(nearest(&set, p + DVec3::Z * 2.0, DVec3::NEG_Z).is_some());
-        assert!(nearest(&set, wide + DVec3::Y * 2.0, DVec3::NEG_Y).is_none());
-        let surface = set.surface(0, p + DVec3::Z * 2.0, DVec3::NEG_Z, 0.0);
-        assert!(surface.ng.z.abs() > 0.95);
-    }
-
-    #[test]
-    fn the_normal_of_a_cylinder_is_that_of_its_place() {
-        let straight = CurveSegment {
-            points: [0.0, 1.0, 2.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0)),
-            widths: [0.5; 2],
-            normals: [Vec3::Z; 2],
-        };
-        let set = CurveSet::new(vec![straight], CurveKind::Cylinder, 0, DAffine3::IDENTITY).unwrap();
-        for y in [-0.2, -0.1, 0.0, 0.15] {
-            let surface = set.surface(0, DVec3::new(1.2, y, 4.0), DVec3::NEG_Z, 0.0);
-            let angle = (y / 0.25) * FRAC_PI_2;
-            // pbrt's angle is proportional to the distance from the axis. Up to the sign of the whole.
-            let expected = DVec3::new(0.0, angle.sin(), angle.cos());
-            assert!(
-                surface.ng.dot(expected).abs() > 1.0 - 1e-6,
-                "{y}: {} {expected}",
-                surface.ng
-            );
-            assert!((f64::from(surface.dpdu.x) - 3.0).abs() < 1e-6);
-            assert!((f64::from(surface.uv.x) - 0.4).abs() < 1e-6);
-        }
-    }
-
-    #[test]
-    fn boxes_hold_what_is_met() {
-        let place = DAffine3::from_scale_rotation_translation(
-            DVec3::new(2.0, 0.5, 1.0),
-            DQuat::from_rotation_y(0.7),
-            DVec3::new(1.0, 2.0, 3.0),
-        );
-        let set = CurveSet::new(vec![segment()], CurveKind::Flat, 3, place).unwrap();
-        let mut hits = 0;
-        for i in 0..20_000 {
-            let a = f64::from(i) * 0.73;
-            let target = place.transform_point3(DVec3::new((1.7 * a).sin(), 0.4 * (2.3 * a).cos(), 0.0));
-            let direction = DVec3::new(a.cos(), a.sin(), (0.3 * a).cos());
-            for part in 0..set.primitive_count() {
-                let origin = target - 3.0 * direction;
-                for t in set.intersect(part, origin, direction).iter() {
-                    let p = (origin + direction * t).as_vec3();
-                    let bounds = set.primitive_bounds(part).expand(1e-5);
-                    assert!(p.cmpge(bounds.min).all() && p.cmple(bounds.max).all());
-                    hits += 1;
-                }
-            }
-        }
-        assert!(hits > 1000);
-    }
-}
+mod tests;

@@ -4,7 +4,7 @@
 
 use super::image::Chromaticities;
 use super::metadata::latin1;
-use super::{Image, ImageMetadata, Window, image_error, read_bytes};
+use super::{Image, ImageMetadata, Window, check_length, image_error, read_bytes};
 use crate::Result;
 use ::exr::block::{BlockIndex, UncompressedBlock, writer::ChunksWriter};
 use ::exr::meta::attribute::{self, ChannelDescription, SampleType};
@@ -42,7 +42,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Option<ImageMetadata>), Str
 fn decode_unguarded(bytes: &[u8]) -> Result<(Image, Option<ImageMetadata>), String> {
     let headers = MetaData::read_from_buffered(bytes, false).map_err(explain)?.headers;
     for header in &headers {
-        check_memory(header)?;
+        check_memory(header, bytes)?;
     }
     let file = exr_reader()
         .no_deep_data()
@@ -68,8 +68,16 @@ fn decode_unguarded(bytes: &[u8]) -> Result<(Image, Option<ImageMetadata>), Stri
 }
 
 /// Refuses an image that memory cannot hold: a damaged header may ask for any size, and a failed allocation would end the process.
-fn check_memory(header: &Header) -> Result<(), String> {
+fn check_memory(header: &Header, file: &[u8]) -> Result<(), String> {
     let Vec2(width, height) = header.layer_size;
+    let pixels = (width as u64).saturating_mul(height as u64);
+    let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
+    // Deflated, single precision may have lost a byte before; DWA makes a number of a block of 64 first.
+    let most = match header.compression {
+        Compression::DWAA(_) | Compression::DWAB(_) => 64 * 1032,
+        _ => 1400,
+    };
+    check_length(bytes, file, most)?;
     let samples = width
         .checked_mul(height)
         .and_then(|pixels| pixels.checked_mul(header.channels.list.len()));

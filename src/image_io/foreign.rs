@@ -1,20 +1,26 @@
 //! JPEG, TGA and Radiance HDR files, read by the crate `image`.
 
-use super::{Encoding, Image, Window};
-use image::{ColorType, DynamicImage, ImageFormat, ImageReader};
+use super::{Encoding, Image, Window, check_length};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use std::io::Cursor;
 
 /// The image in a file's bytes, or what is wrong with them. `encoding` is that of 8-bit samples; alpha is linear.
 pub(super) fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding) -> Result<Image, String> {
-    let name = match format {
-        ImageFormat::Jpeg => "JPEG",
-        ImageFormat::Tga => "TGA",
-        _ => "HDR",
+    // The most pixels that a byte of the file can stand for: in JPEG each block of 64 samples takes a bit at least; a packet of TGA is
+    // 128 pixels in two bytes; a row of HDR in the old way of counting runs is some twelve bytes.
+    let (name, most) = match format {
+        ImageFormat::Jpeg => ("JPEG", 512),
+        ImageFormat::Tga => ("TGA", 64),
+        _ => ("HDR", 4096),
     };
+    let malformed = |error: image::ImageError| format!("malformed {name} file: {error}");
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     // The whole file must fit into memory anyway.
     reader.no_limits();
-    let decoded = reader.decode().map_err(|e| format!("malformed {name} file: {e}"))?;
+    let decoder = reader.into_decoder().map_err(malformed)?;
+    let (width, height) = decoder.dimensions();
+    check_length(u64::from(width) * u64::from(height), bytes, most)?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(malformed)?;
     let side = |n: u32| i32::try_from(n).map_err(|_| format!("malformed {name} file: too large"));
     let window = Window::of_size(side(decoded.width())?, side(decoded.height())?);
     let table = encoding.decode_table();

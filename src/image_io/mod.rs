@@ -82,6 +82,15 @@ pub fn decode(bytes: &[u8], path: &Path, encoding: Encoding) -> Result<Image> {
     .map_err(|message| image_error(path, message))
 }
 
+/// Refuses a file of which a header promises more `units` (pixels or bytes) than it can hold, if a byte can stand for `most` of them:
+/// before anything is allocated by that number.
+fn check_length(units: u64, file: &[u8], most: u64) -> Result<(), String> {
+    if units <= most.saturating_mul(file.len() as u64) {
+        return Ok(());
+    }
+    Err("the file is too short for as many pixels as it claims to have".to_owned())
+}
+
 /// The whole file.
 fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|source| Error::io("read", path, source))

@@ -1,10 +1,13 @@
 //! PNG files: 8-bit sRGB out, 8 or 16 bits in.
 
-use super::{Encoding, Image, Window, image_error, read_bytes, srgb};
+use super::{Encoding, Image, Window, check_length, image_error, read_bytes, srgb};
 use crate::Result;
 use ::png::{BitDepth, ColorType, Decoder, Encoder, SrgbRenderingIntent, Transformations};
 use std::io::Cursor;
 use std::path::Path;
+
+/// The most bytes that a compressed byte can stand for.
+const DEFLATE: u64 = 1032;
 
 /// Reads a PNG file (any colour type and depth) as linear values in [0, 1]: channels R, G, B or Y, and A if the file has alpha or a
 /// transparent colour. Colour is taken as sRGB whatever gamma or profile the file names, alpha as linear; colour is not multiplied
@@ -22,7 +25,10 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image, String> 
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(malformed)?;
-    let mut samples = Vec::new();
+    let (header, mut samples) = (reader.info(), Vec::new());
+    let pixels = u64::from(header.width) * u64::from(header.height);
+    let packed = pixels.saturating_mul(header.bits_per_pixel() as u64) / 8;
+    check_length(packed, bytes, DEFLATE)?;
     let size = reader.output_buffer_size();
     // The decoded bytes, and four times as much for them as floats.
     let fits = size.is_some_and(|n| Vec::<[u8; 5]>::new().try_reserve_exact(n).is_ok());

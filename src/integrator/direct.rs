@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::numbers::EventNumbers;
 use crate::desc::{Heuristic, Strategy};
 use crate::geometry::{Ray, SurfaceInteraction};
-use crate::light::{LightDensity, LightEnd, LightSample};
+use crate::light::{LightDensity, LightEnd, LightSample, SampledLight};
 use crate::material::{Bsdf, TransportMode};
 use crate::math::Vec3;
 use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
@@ -49,6 +49,8 @@ pub(super) struct Viewpoint {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundLight {
     pub sample: LightSample,
+    /// Whose it is.
+    pub chosen: SampledLight,
     /// What arrives by way of the event if nothing is between, divided by the density of the sample, not weighed.
     pub value: SampledSpectrum,
     /// The density of the sample; none if no direction could have met the light.
@@ -178,6 +180,7 @@ impl DirectLight {
         Some(FoundLight {
             value: scattered * sample.li * factor,
             sample,
+            chosen,
             pdf_light,
             pdf_scatter: SolidAnglePdf(self.bsdf_samples * pdf.0),
         })

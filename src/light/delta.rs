@@ -46,6 +46,10 @@ impl PointLight {
         Self { place, intensity }
     }
 
+    pub(super) fn place(&self) -> &Place {
+        &self.place
+    }
+
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         towards_point(p, self.place.at(time).position, |_| self.intensity.sample(lambda))
     }

@@ -39,6 +39,10 @@ impl GoniometricLight {
         4.0 * PI * mean(factors)
     }
 
+    pub(super) fn place(&self) -> &Place {
+        &self.place
+    }
+
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {

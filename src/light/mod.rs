@@ -142,6 +142,18 @@ impl Light {
         }
     }
 
+    /// The point at which all of it is at `time`; `None` for a light with extent, or infinitely far away.
+    pub fn position(&self, time: f32) -> Option<Vec3> {
+        let place = match self {
+            Self::Point(light) => light.place(),
+            Self::Spot(light) => light.place(),
+            Self::Goniometric(light) => light.place(),
+            Self::Projection(light) => light.place(),
+            Self::Area(_) | Self::Distant(_) | Self::Environment(_) => return None,
+        };
+        Some(place.at(time).position)
+    }
+
     /// Whether only [`Light::sample_li`] finds it: one without extent, or that rays pass.
     pub fn is_delta(&self) -> bool {
         match self {

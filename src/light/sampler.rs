@@ -40,6 +40,17 @@ impl LightSampler {
         Self::table(&weights)
     }
 
+    /// Lights that are points only, in proportion to [`Light::power`].
+    pub fn points(lights: &[Light], scene_bounds: &Bounds3) -> Self {
+        let power = |light: &Light| light.position(0.0).map_or(0.0, |_| light.power(scene_bounds));
+        Self::table(&lights.iter().map(power).collect::<Vec<_>>())
+    }
+
+    /// Whether it never chooses any.
+    pub fn is_empty(&self) -> bool {
+        matches!(self.0, Kind::None)
+    }
+
     /// By an estimate of what arrives at the point that is lit, in a time that grows like the logarithm of their number: a
     /// light bounding volume hierarchy (Conty Estevez and Kulla 2018). Each infinite light is as likely as all others together.
     pub fn bvh(lights: &[Light], scene_bounds: &Bounds3) -> Self {

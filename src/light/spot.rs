@@ -47,6 +47,10 @@ impl SpotLight {
         cone_power(rise(start), rise(end))
     }
 
+    pub(super) fn place(&self) -> &Place {
+        &self.place
+    }
+
     pub(super) fn sample_li(&self, p: Vec3, time: f32, lambda: &Wavelengths) -> Option<LightSample> {
         let pose = self.place.at(time);
         towards_point(p, pose.position, |w| {

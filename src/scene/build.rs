@@ -1,5 +1,6 @@
 //! From a description to a scene.
 
+use std::borrow::Borrow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,7 +15,7 @@ use crate::accel;
 use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
-use crate::light::{LightId, LightSampler};
+use crate::light::{Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::AnimatedTransform;
 use crate::texture::FloatTexture;
@@ -35,6 +36,24 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for what the description asks and cannot be had, [`Error::Backend`] if the backend fails.
     pub fn build(desc: &SceneDesc, options: &SceneOptions) -> Result<Self> {
+        Self::of_shapes(desc, desc.shapes.iter(), options)
+    }
+
+    /// As [`Scene::build`], but takes the shapes that stand in the world themselves out of the description, and forgets each once it has its
+    /// geometry: else there would be two of each mesh while memory is scarcest.
+    ///
+    /// # Errors
+    /// As for [`Scene::build`].
+    pub fn build_taking_shapes(desc: &mut SceneDesc, options: &SceneOptions) -> Result<Self> {
+        let shapes = std::mem::take(&mut desc.shapes);
+        Self::of_shapes(desc, shapes.into_iter(), options)
+    }
+
+    fn of_shapes(
+        desc: &SceneDesc,
+        shapes: impl Iterator<Item = impl Borrow<ShapeDesc>>,
+        options: &SceneOptions,
+    ) -> Result<Self> {
         let spectra = SpectrumCompiler { mode: options.color };
         let mut builder = SceneBuilder {
             desc,
@@ -44,7 +63,7 @@ impl Scene {
             lights: LightBuilder::new(options.color),
             problems: Vec::new(),
         };
-        builder.add_shapes();
+        builder.add_shapes(shapes);
         builder.add_objects();
         for light in &desc.lights {
             if let Err(message) = builder.lights.add(light) {
@@ -68,6 +87,12 @@ impl Scene {
         let accel = Arc::from(accel::build(options.backend, &world, &options.build)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
+        let in_media: &[Light] = if desc.media.is_empty() {
+            &[]
+        } else {
+            &builder.lights.lights
+        };
+        let point_sampler = LightSampler::points(in_media, &bounds);
         let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),
             LightSamplerKind::Power => LightSampler::power(&builder.lights.lights, &bounds),
@@ -90,6 +115,7 @@ impl Scene {
             environments: builder.lights.environments,
             light_sampler,
             emission_sampler,
+            point_sampler,
             build_seconds,
         })
     }
@@ -101,9 +127,9 @@ impl SceneBuilder<'_> {
             .push(self.desc.sources.diagnostic(Severity::Error, span, message.into()));
     }
 
-    fn add_shapes(&mut self) {
-        for shape in &self.desc.shapes {
-            if let Some((id, motion)) = self.add_shape(shape) {
+    fn add_shapes(&mut self, shapes: impl Iterator<Item = impl Borrow<ShapeDesc>>) {
+        for shape in shapes {
+            if let Some((id, motion)) = self.add_shape(shape.borrow()) {
                 match motion {
                     None => self.world.root.geometries.push(id),
                     Some(instance) => self.world.root.instances.push(instance),

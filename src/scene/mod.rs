@@ -61,6 +61,8 @@ pub struct Scene {
     light_sampler: LightSampler,
     /// By power.
     emission_sampler: LightSampler,
+    /// Of points, by power; empty without media.
+    point_sampler: LightSampler,
     /// Whether anything but a camera moves.
     moves: bool,
     /// Seconds that the backend took to build.
@@ -198,6 +200,12 @@ impl Scene {
     #[inline]
     pub fn emission_sampler(&self) -> &LightSampler {
         &self.emission_sampler
+    }
+
+    /// Chooses lights that are points, for what media scatter of their light, whatever point is asked for. Empty without media.
+    #[inline]
+    pub fn point_sampler(&self) -> &LightSampler {
+        &self.point_sampler
     }
 
     /// Seconds that the backend took to build.

@@ -143,6 +143,25 @@ fn a_scene_tells_all_its_errors_with_their_places() {
 }
 
 #[test]
+fn what_becomes_too_much_is_refused() {
+    let sandbox = Sandbox::new();
+    let film = "Film \"rgb\" \"integer xresolution\" 1000000 \"integer yresolution\" 1000000";
+    sandbox.write("vast.pbrt", &format!("{film} WorldBegin Shape \"sphere\""));
+    sandbox
+        .lucerna(&["render", "vast.pbrt"])
+        .expect(2)
+        .says("a smaller --resolution or --crop takes less");
+    sandbox.write(
+        "much.pbrt",
+        "WorldBegin\n  Shape \"loopsubdiv\" \"integer levels\" 20\n\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n",
+    );
+    sandbox
+        .lucerna(&["render", "much.pbrt"])
+        .expect(2)
+        .says("much.pbrt:2:9: error: this shape would become more than");
+}
+
+#[test]
 fn files_that_cannot_be_read_or_written_are_code_1() {
     let sandbox = Sandbox::new();
     sandbox

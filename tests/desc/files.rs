@@ -138,6 +138,42 @@ fn files_that_include_themselves_are_refused() {
     assert!(message.contains("more than 64 files"), "{message}");
 }
 
+/// Each of 40 files includes the next one twice: no cycle, but more than 10^12 files.
+#[test]
+fn files_that_include_one_another_without_end_are_refused() {
+    let chain: Vec<(String, String)> = (0..40)
+        .map(|i| {
+            let start = if i == 0 { "WorldBegin" } else { "" };
+            let next = format!("Include \"{}.pbrt\"", i + 1);
+            (format!("{i}.pbrt"), format!("{start}\n{next}\n{next}"))
+        })
+        .chain([("40.pbrt".to_owned(), "Translate 1 0 0".to_owned())])
+        .collect();
+    let chain: Vec<(&str, &str)> = chain.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+    let Err(Error::Scene(errors)) = open(&directory(&chain), "0.pbrt") else {
+        panic!("no error")
+    };
+    assert!(errors[0].message.contains("again and again"), "{}", errors[0]);
+    assert!(errors[0].line >= 1 && errors.len() <= 50);
+}
+
+#[test]
+fn triangles_without_area_are_told_of_with_their_mesh() {
+    let flat = "\"point3 P\" [0 0 0  1 1 1  2 2 2  0 1 0] \"integer indices\" [0 1 2  0 1 3  1 1 3]";
+    let moving = "\"point3 P\" [0 0 0 1 0 0 2 0 0] \"point3 P1\" [0 0 0 1 0 0 0 1 0]";
+    let text =
+        format!("WorldBegin\nShape \"sphere\"\n  Shape \"trianglemesh\" {flat}\nShape \"trianglemesh\" {moving}");
+    let scene = scene(&[("main.pbrt", &text)]);
+    let [warning] = &scene.warnings[..] else {
+        panic!("{:?}", scene.warnings)
+    };
+    assert_eq!((warning.line, warning.column), (3, 9));
+    assert_eq!(
+        warning.message,
+        "2 of the 3 triangles of this mesh have no area: nothing meets them"
+    );
+}
+
 #[test]
 fn spectra_come_from_files() {
     let main = "WorldBegin Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\"";

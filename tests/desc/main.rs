@@ -1,4 +1,4 @@
-//! Scene descriptions: what pbrt and Mitsuba files and meshes become, what is said about bad ones, and that no bytes make a reader panic.
+//! Scene descriptions: what pbrt and Mitsuba files and meshes become, what is said about bad ones.
 
 mod bad_input;
 mod bare;
@@ -8,7 +8,6 @@ mod lights;
 mod materials;
 mod media;
 mod mitsuba;
-mod mutations;
 mod obj;
 mod options;
 mod ply;

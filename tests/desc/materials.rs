@@ -8,6 +8,7 @@ use crate::{errors, scene, world};
 fn text(material: &str, parameters: &str) -> String {
     let needed = match material {
         "mix" if !parameters.contains("materials") => "\"string materials\" [\"a\" \"a\"]",
+        "tinted" if !parameters.contains(" material\"") => "\"string material\" \"gold\"",
         "measured" if !parameters.contains("filename") => concat!(
             "\"string filename\" \"",
             env!("CARGO_MANIFEST_DIR"),
@@ -16,7 +17,7 @@ fn text(material: &str, parameters: &str) -> String {
         _ => "",
     };
     format!(
-        "WorldBegin MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"{material}\" {needed} {parameters} Shape \"sphere\""
+        "WorldBegin MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"gold\" \"string type\" \"conductor\"\nMaterial \"{material}\" {needed} {parameters} Shape \"sphere\""
     )
 }
 
@@ -37,7 +38,10 @@ fn wrong(parameter: &Parameter) -> Vec<(String, String)> {
             cases.push(case("float", "[1 2]", "takes 1 value"));
             cases.push(case("float", "-1", &format!("must be {range}")));
         }
-        ParameterKind::Choice { .. } => cases.push(case("string", "\"gxg\"", "is one of ggx, beckmann, not `gxg`")),
+        ParameterKind::Choice { choices, .. } => {
+            let part = format!("is one of {}, not `gxg`", choices.join(", "));
+            cases.push(case("string", "\"gxg\"", &part));
+        }
         ParameterKind::Reflectance { .. } => {
             cases.push(case("rgb", "[.5 1.5 .5]", "must be between 0 and 1"));
             cases.push(case("rgb", "[.5 .5]", "takes 3 values"));
@@ -47,11 +51,16 @@ fn wrong(parameter: &Parameter) -> Vec<(String, String)> {
                 "neither the name of a spectrum nor a file",
             ));
         }
-        ParameterKind::MetalIndex { .. } => cases.push(case("rgb", "[1 0 1]", "must be positive")),
-        ParameterKind::MetalAbsorption { .. } => cases.push(case("rgb", "[1 -1 1]", "must be 0 or more")),
+        ParameterKind::MetalIndex { .. } | ParameterKind::MetalAbsorption { .. } => {
+            cases.push(case("rgb", "[1 -1 1]", "must be 0 or more"));
+        }
         ParameterKind::GlassIndex { .. } => {
             cases.push(case("float", "0", "must be positive"));
             cases.push(case("rgb", "[1 1 1]", "not a colour"));
+        }
+        ParameterKind::Material => {
+            cases.push(case("string", "[\"a\" \"b\"]", "takes 1 value, found 2"));
+            cases.push(case("string", "\"b\"", "there is no named material `b`"));
         }
         ParameterKind::TwoMaterials => {
             cases.push(case("string", "\"a\"", "takes 2 values, found 1"));

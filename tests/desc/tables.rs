@@ -56,6 +56,7 @@ impl Case {
         let Entry { directive, name, .. } = *self.entry;
         let needed = match name {
             "mix" if directive == "Material" => "\"string materials\" [\"a\" \"a\"]".to_owned(),
+            "tinted" => "\"string material\" \"gold\"".to_owned(),
             "measured" | "imagemap" | "goniometric" | "projection" => {
                 format!("\"string filename\" {}", self.file("filename"))
             }
@@ -76,7 +77,7 @@ impl Case {
             None => format!("{directive} \"{name}\" {needed} {parameters}"),
         };
         let world = "WorldBegin Texture \"t\" \"float\" \"constant\" Texture \"t\" \"spectrum\" \"constant\"
-            MakeNamedMaterial \"a\" \"string type\" \"diffuse\"";
+            MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"gold\" \"string type\" \"conductor\"";
         match directive {
             "Sampler" | "Integrator" => format!("{used} WorldBegin"),
             _ => format!("{world}\n{used} Shape \"sphere\""),
@@ -112,6 +113,7 @@ impl Case {
             (ParameterKind::Choice { default, .. }, _) => format!("\"{default}\""),
             (ParameterKind::Encoding { default }, _) => format!("\"{default}\""),
             (ParameterKind::File, _) => self.file(parameter.name).to_owned(),
+            (ParameterKind::Material, _) => "\"gold\"".to_owned(),
             (ParameterKind::TwoMaterials, _) => "[\"a\" \"a\"]".to_owned(),
             (ParameterKind::Points(4), _) => "[0 0 0  0 1 0  1 1 0  1 0 0]".to_owned(),
             _ => value.to_owned(),
@@ -274,7 +276,10 @@ fn quantities_have_units() {
         .filter(|case| case.entry.directive.ends_with("LightSource"))
     {
         for parameter in case.entry.parameters {
-            let is_quantity = !matches!(parameter.kind, ParameterKind::Bool(_) | ParameterKind::File);
+            let is_quantity = !matches!(
+                parameter.kind,
+                ParameterKind::Bool(_) | ParameterKind::File | ParameterKind::Choice { .. }
+            );
             let is_factor = parameter.name == "scale";
             assert_eq!(
                 !parameter.unit.is_empty(),

@@ -94,3 +94,48 @@ fn rarer_things_are_the_same_again() {
         check(text, &crate::scene(text));
     }
 }
+
+/// Mitsuba's scenes, with all that pbrt-v4 has no word for.
+#[test]
+fn scenes_of_mitsuba_are_the_same_again() {
+    let image = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seeds/png/rgb8.png");
+    let ball = |bsdf: &str| format!("<shape type=\"sphere\">{bsdf}</shape>");
+    let texture = |content: &str| {
+        ball(&format!(
+            "<bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"{image}\"/>{content}</texture></bsdf>"
+        ))
+    };
+    let mut scenes = vec![
+        texture(r#"<string name="wrap_mode" value="mirror"/><string name="filter_type" value="nearest"/>"#),
+        texture(r#"<string name="wrap_mode" value="clamp"/><transform name="to_uv"><scale x="3" y="2"/><rotate z="1" angle="30"/></transform>"#),
+        r#"<emitter type="spot"><float name="cutoff_angle" value="25.5"/><float name="beam_width" value="7"/></emitter>"#.to_owned(),
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seeds/mitsuba/materials.xml")).expect("a scene"),
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seeds/mitsuba/scene.xml")).expect("a scene"),
+    ];
+    for bsdf in [
+        r#"<bsdf type="diffuse"/>"#,
+        r#"<bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>"#,
+        r#"<bsdf type="roughplastic"><float name="alpha" value=".3"/><boolean name="nonlinear" value="true"/></bsdf>"#,
+        r#"<bsdf type="conductor"/>"#,
+        r#"<bsdf type="roughconductor"><string name="material" value="Au"/><string name="distribution" value="ggx"/></bsdf>"#,
+        r#"<bsdf type="dielectric"><rgb name="specular_transmittance" value=".9, 1, .8"/></bsdf>"#,
+        r#"<bsdf type="thindielectric"><rgb name="specular_reflectance" value=".9, 1, .8"/></bsdf>"#,
+        r#"<bsdf type="roughdielectric"><float name="alpha_u" value=".1"/><float name="alpha_v" value=".4"/></bsdf>"#,
+        r#"<bsdf type="principled"><float name="metallic" value=".4"/><float name="spec_trans" value=".5"/></bsdf>"#,
+        r#"<bsdf type="mask"><float name="opacity" value=".4"/><bsdf type="plastic"/></bsdf>"#,
+        r#"<bsdf type="bumpmap"><texture type="checkerboard" name="b"/><bsdf type="blendbsdf"><float name="weight" value=".3"/>
+           <bsdf type="diffuse"/><bsdf type="conductor"/></bsdf></bsdf>"#,
+        r#"<bsdf type="bumpmap"><texture type="checkerboard" name="b"/><bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf></bsdf>"#,
+    ] {
+        scenes.push(ball(bsdf));
+    }
+    for scene in scenes {
+        let text = if scene.contains("<scene") {
+            scene
+        } else {
+            crate::mitsuba::file(&scene)
+        };
+        let read = lucerna::desc::mitsuba::parse_str(text.as_bytes(), Path::new("scene.xml"), &STRICT);
+        check(&text, &read.unwrap_or_else(|e| panic!("{e}")));
+    }
+}

@@ -64,3 +64,48 @@ fn what_is_no_image_is_refused() {
     assert!(refused(b"#?RADIANCE\n", "x.hdr").contains("malformed HDR"));
     assert!(refused(b"short", "x.tga").contains("malformed TGA"));
 }
+
+/// A small file cannot have many pixels, whatever its header says: nothing is allocated by that.
+#[test]
+fn files_too_short_for_their_pixels_are_refused() {
+    let seed = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/seeds").join(name);
+        fs::read(path).expect("a file")
+    };
+    let after = |file: &[u8], mark: &[u8]| {
+        let at = file.windows(mark.len()).position(|w| w == mark).expect("the mark");
+        at + mark.len()
+    };
+    let mut png = seed("png/rgb8.png");
+    png[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let mut sum = flate2::Crc::new();
+    sum.update(&png[12..29]);
+    png[29..33].copy_from_slice(&sum.sum().to_be_bytes());
+    let mut jpeg = seed("jpeg/colour.jpg");
+    let size = after(&jpeg, b"\xff\xc0") + 3;
+    jpeg[size..size + 4].fill(0xff);
+    let mut tga = seed("tga/runs.tga");
+    tga[12..16].fill(0xff);
+    let hdr = String::from_utf8_lossy(&seed("hdr/plain.hdr")[..46]).into_owned() + "-Y 30000 +X 30000\n....";
+    let mut exr = seed("exr/half.exr");
+    for window in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+        let size = after(&exr, window) + 12;
+        exr[size..size + 8].copy_from_slice(&[0, 0, 2, 0, 0, 0, 2, 0]);
+    }
+    for (name, file) in [
+        ("x.png", png),
+        ("x.jpg", jpeg),
+        ("x.tga", tga),
+        ("x.hdr", hdr.into_bytes()),
+        ("x.exr", exr),
+        ("x.pfm", b"PF 100000 100000 -1\n....".to_vec()),
+    ] {
+        match decode(&file, Path::new(name), Encoding::Srgb) {
+            Err(Error::Image { message, .. }) => {
+                let says_so = ["too short", "ends before"].iter().any(|part| message.contains(part));
+                assert!(says_so, "{name}: {message}");
+            }
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}

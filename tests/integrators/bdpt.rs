@@ -7,7 +7,7 @@ use lucerna::scene::ViewOverrides;
 use lucerna::spectrum::ColorMode;
 
 use crate::common::means::Means;
-use crate::common::render::{Built, combinations, parse};
+use crate::common::render::{Built, parse, usual_combinations};
 use crate::stage::{build, integrator, means, runs};
 
 /// A room with a lamp, a mirror and glass, seen through a filter that reaches far, with a lens.
@@ -44,7 +44,7 @@ fn picture(built: &Built, overrides: &ViewOverrides, threads: usize) -> Vec<u32>
 
 #[test]
 fn a_crop_is_the_crop_of_the_whole_and_threads_change_nothing() {
-    for (backend, color) in combinations() {
+    for (backend, color) in usual_combinations("crop") {
         for name in ["bdpt", "lightpath"] {
             let built = Built::new(parse(&room(name, PANEL)), backend, color);
             let whole_view = ViewOverrides {
@@ -101,7 +101,7 @@ fn a_white_furnace_under_an_environment_is_white() {
     ] {
         // The noisiest once only.
         let is_noisy = material.contains("roughness");
-        for (backend, color) in combinations().take(if is_noisy { 1 } else { usize::MAX }) {
+        for (backend, color) in usual_combinations(material).take(if is_noisy { 1 } else { usize::MAX }) {
             let text = format!(
                 r#"LookAt 0 0 -4  0 0 0  0 1 0
                 Camera "perspective" "float fov" 40

@@ -8,7 +8,7 @@ use lucerna::spectrum::ColorMode;
 
 use crate::bdpt::{PANEL, room};
 use crate::common::means::FEWEST_RUNS;
-use crate::common::render::{Built, blocks, combinations, parse};
+use crate::common::render::{Built, blocks, parse, usual_combinations};
 use crate::stage::{integrator, means};
 
 /// The picture, and its layers.
@@ -40,7 +40,7 @@ fn is_weighted(layer: StrategyLayer) -> bool {
 fn weighted_layers_add_up_to_the_picture() {
     let sky = r#"LightSource "infinite" "rgb L" [0.3 0.4 0.5]
         LightSource "spot" "point3 from" [0 1.8 -1] "point3 to" [0 0 0] "rgb I" [2 2 2]"#;
-    for (backend, color) in combinations() {
+    for (backend, color) in usual_combinations("layers") {
         for lamp in [PANEL, sky] {
             let built = Built::new(parse(&room("bdpt", lamp)), backend, color);
             let overrides = ViewOverrides {

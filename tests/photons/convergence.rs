@@ -131,7 +131,12 @@ fn passes_lower_bias_and_noise_at_the_rates_of_theory() {
     let integrator = sppm(Some(2), 2000, RADIUS as f32);
     let (mut biases, mut predicted) = (Vec::new(), Vec::new());
     let (mut variances, mut predicted_variances) = (Vec::new(), Vec::new());
-    for passes in [1_u32, 8, 64] {
+    let (counts, precision) = if full_tier() {
+        ([1, 8, 64], 0.09)
+    } else {
+        ([1, 4, 16], 0.12)
+    };
+    for passes in counts {
         let squares: Vec<f64> = (0..passes).map(shrinkage).collect();
         let mean = |f: &dyn Fn(f64) -> f64| squares.iter().map(|&s| f(s)).sum::<f64>() / f64::from(passes);
         let expected = mean(&|s| seen(RADIUS * s.sqrt()));
@@ -161,7 +166,7 @@ fn passes_lower_bias_and_noise_at_the_rates_of_theory() {
             (fitted - theory).abs() < 4.0 * deviation,
             "{name}: {fitted} +- {deviation}, {theory}"
         );
-        assert!(deviation < 0.09, "{name}: {deviation}");
+        assert!(deviation < precision, "{name}: {deviation}");
     }
 }
 

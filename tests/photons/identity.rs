@@ -4,7 +4,7 @@ use lucerna::desc::PixelRect;
 use lucerna::integrator::Integrator;
 use lucerna::scene::ViewOverrides;
 
-use crate::common::render::{Built, combinations, parse};
+use crate::common::render::{Built, parse, usual_combinations};
 use crate::{film, photon, quad, sppm};
 
 const SIZE: [usize; 2] = [72, 44];
@@ -65,7 +65,7 @@ fn bits(picture: &[f32]) -> Vec<u32> {
 #[test]
 fn threads_crops_and_single_samples_change_nothing() {
     let spp = 4;
-    for (i, (backend, color)) in combinations().enumerate() {
+    for (i, (backend, color)) in usual_combinations("").enumerate() {
         let built = Built::new(parse(&scene(["", MOVING][i % 2])), backend, color);
         for integrator in both() {
             let name = format!("{}, {backend}, {color:?}", integrator.name());

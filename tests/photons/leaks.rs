@@ -3,8 +3,8 @@
 use lucerna::integrator::Integrator;
 use lucerna::spectrum::ColorMode;
 
-use crate::common::render::{Built, parse};
-use crate::{build, film, pairs, photon, quad, sppm};
+use crate::common::render::{Built, parse, usual_combinations};
+use crate::{build, film, photon, quad, sppm};
 use lucerna::scene::ViewOverrides;
 
 const RADIUS: f32 = 0.2;
@@ -67,7 +67,7 @@ fn camera_at(eye: &str, at: &str, up: &str, window: &str) -> String {
 fn the_back_of_a_lit_wall_is_black() {
     let behind = camera_at("3 0 1", "0 0 1", "0 0 1", "-0.8 0.8 -0.8 0.8");
     let front = camera_at("-0.2 0 1", "0 0 1", "0 0 1", "-0.8 0.8 -0.8 0.8");
-    for (backend, color) in pairs() {
+    for (backend, color) in usual_combinations("wall") {
         for sheets in [
             wall(0.0),
             wall(0.0) + &wall(1e-3),
@@ -143,7 +143,7 @@ fn light_does_not_go_around_an_edge() {
     let roof = quad([-1.0, -1.0, 0.6], [1.0, 0.0, 0.4], [0.0, 2.0, 0.0])
         + &quad([0.0, -1.0, 1.0], [2.0, 0.0, -0.73], [0.0, 2.0, 0.0]);
     for (name, solid) in [("block", block), ("roof", roof)] {
-        for (backend, color) in pairs() {
+        for (backend, color) in usual_combinations(name) {
             let seen = camera_at("0.4 0 3", "0.4 0 0", "0 1 0", "-0.39 0.39 -0.39 0.39");
             let text = format!("{seen}{}WorldBegin\n{lamp}{ground}{solid}", film([16, 16]));
             let built = Built::new(parse(&text), backend, color);

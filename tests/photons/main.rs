@@ -19,9 +19,9 @@ mod slabs;
 mod surfaces;
 mod terms;
 
+use common::effort;
 use common::means::{FEWEST_RUNS, Means};
-use common::render::{Built, blocks, combinations};
-use common::{effort, full_tier};
+use common::render::{Built, blocks};
 use lucerna::accel::Backend;
 use lucerna::desc::{PhotonDesc, SppmDesc};
 use lucerna::integrator::{Integrator, Limits, PhotonIntegrator, SppmIntegrator};
@@ -57,13 +57,6 @@ fn sppm(max_depth: Option<u32>, photons: u32, radius: f32) -> Integrator {
 #[track_caller]
 fn build(text: &str, color: ColorMode) -> Built {
     Built::new(common::render::parse(text), Backend::default(), color)
-}
-
-/// Each backend and each colour mode once; in the full tier all of them together.
-fn pairs() -> Vec<(Backend, ColorMode)> {
-    let all: Vec<_> = combinations().collect();
-    let is_wanted = |i: usize| full_tier() || matches!((i, all.len()), (0, _) | (3, 4) | (1, 2));
-    (0..all.len()).filter(|&i| is_wanted(i)).map(|i| all[i]).collect()
 }
 
 /// 16 renders of the first view with seeds from `first_seed` on: the means of blocks of pixels. The full tier has eight times as

@@ -10,7 +10,7 @@ use lucerna::spectrum::{ColorMode, Outside, Spectrum, SpectrumRole};
 
 use crate::common::full_tier;
 use crate::common::render::{MODES, expected_rgb};
-use crate::{assert_exact, build, film, photon, quad, runs, sppm};
+use crate::{assert_agree, assert_exact, build, film, photon, quad, runs, sppm};
 
 /// What light does not lose at one surface of index `n`, where its angle to the normal in air has this cosine.
 pub fn through(n: f64, cos: f64) -> f64 {
@@ -223,5 +223,26 @@ fn a_point_light_in_glass_is_seen_through_glass() {
         // The circles blur by 3/4 of 0.35 r² / h², 0.4 % of the brightest, at most.
         let power = if mode == ColorMode::Rgb { 0.05 } else { 0.15 };
         assert_exact(&name, &runs, &expected, 4e-3, power);
+    }
+}
+
+/// Under a lamp so large that `path` finds it through both panes, by chance alone, all three see the same.
+#[test]
+fn under_a_large_lamp_the_light_is_what_path_finds() {
+    let glass = Glass::plain();
+    let lamp = format!(
+        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\n{}AttributeEnd\n",
+        quad([-2.0, -2.0, 1.2], [0.0, 4.0, 0.0], [4.0, 0.0, 0.0])
+    );
+    let text = slabs(&glass, &glass);
+    let (head, tail) = (text.find("LightSource").unwrap(), text.find("Material").unwrap());
+    let built = build(&format!("{}{lamp}{}", &text[..head], &text[tail..]), ColorMode::Rgb);
+    let path = Integrator::from_desc(&built.desc.integrator).with_max_depth(Some(5));
+    let reference = runs(&built, path, 128, 101, [4, 4]);
+    assert!(reference.iter().flatten().all(|&v| v > 0.0));
+    for integrator in both(5, 2000, 0.1) {
+        let ours = runs(&built, integrator, 64, 1, [4, 4]);
+        let name = format!("{} under a large lamp", integrator.name());
+        assert_agree(&name, &ours, &reference, 5e-3, 0.05);
     }
 }

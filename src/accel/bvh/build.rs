@@ -21,22 +21,36 @@ pub struct BuildParams<'a> {
     pub corners: Option<&'a dyn Corners>,
 }
 
-/// A binary tree.
+/// A binary tree. There are about as many as triangles, while memory is scarcest: so it has no more than is asked for.
 #[derive(Debug)]
-pub struct Binary {
-    /// A box around all of it.
-    pub bounds: Bounds3,
-    /// What is in it.
-    pub content: Content,
+pub enum Binary {
+    /// Some of the items, which the build has reordered.
+    Leaf(Leaf),
+    /// Two trees.
+    Inner {
+        /// Half of the area of the box around both, without overflow.
+        half_area: f64,
+        /// Them.
+        children: Box<[Binary; 2]>,
+    },
 }
 
-/// What a binary tree holds.
-#[derive(Debug)]
-pub enum Content {
-    /// These of the items, which the build has reordered.
-    Leaf(Range<usize>),
-    /// Two trees.
-    Inner(Box<[Binary; 2]>),
+const _: () = assert!(size_of::<Binary>() == 16);
+
+/// Items one after another.
+#[derive(Clone, Copy, Debug)]
+pub struct Leaf {
+    /// The first. There are fewer than 2^32, room for fragments included: memory has no place for more.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+}
+
+impl Leaf {
+    /// Where they are among all items.
+    pub fn range(self) -> Range<usize> {
+        self.first as usize..self.first as usize + self.count as usize
+    }
 }
 
 /// Levels of a binary tree. Where splits by the heuristic threaten to need more, items are halved by number, which needs no
@@ -49,8 +63,9 @@ pub const LEAST_PARALLEL: usize = 4096;
 /// Fragments that spatial splits may add, as a part of all triangles.
 const MOST_FRAGMENTS: f64 = 0.3;
 
-/// Builds a tree over `items`, of which there is at least one; they may become more, with gaps between those of different leaves.
-pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> Binary {
+/// Builds a tree over `items`, of which there is at least one; they may become more, with gaps between those of different leaves. With a
+/// box around all.
+pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> (Binary, Bounds3) {
     let extent = bins::extent_of(items);
     let count = items.len();
     if params.corners.is_some() {
@@ -61,7 +76,8 @@ pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> Binary {
         params,
         least_overlap: extent.bounds.half_area() * spatial::LEAST_OVERLAP,
     };
-    builder.range(items, Place { first: 0, level: 0 }, count, extent)
+    let tree = builder.range(items, Place { first: 0, level: 0 }, count, extent);
+    (tree, extent.bounds.bounds())
 }
 
 struct Builder<'a> {
@@ -88,12 +104,11 @@ struct Divided {
 impl Builder<'_> {
     /// A tree over the first `count` items of a range; the rest of it is room for fragments.
     fn range(&self, items: &mut [Item], place: Place, count: usize, extent: Extent) -> Binary {
-        let bounds = extent.bounds.bounds();
         if is_leaf(&items[..count], self.params.triangles) {
-            return Binary {
-                bounds,
-                content: Content::Leaf(place.first..place.first + count),
-            };
+            return Binary::Leaf(Leaf {
+                first: place.first as u32,
+                count: count as u32,
+            });
         }
         let Divided {
             counts,
@@ -112,9 +127,9 @@ impl Builder<'_> {
         } else {
             (build_left(), build_right())
         };
-        Binary {
-            bounds,
-            content: Content::Inner(Box::new([left, right])),
+        Binary::Inner {
+            half_area: extent.bounds.half_area(),
+            children: Box::new([left, right]),
         }
     }
 
@@ -228,16 +243,16 @@ mod tests {
     use crate::math::Vec3;
 
     fn levels(tree: &Binary) -> u32 {
-        match &tree.content {
-            Content::Leaf(_) => 1,
-            Content::Inner(children) => 1 + levels(&children[0]).max(levels(&children[1])),
+        match tree {
+            Binary::Leaf(_) => 1,
+            Binary::Inner { children, .. } => 1 + levels(&children[0]).max(levels(&children[1])),
         }
     }
 
     fn leaves(tree: &Binary, out: &mut Vec<Range<usize>>) {
-        match &tree.content {
-            Content::Leaf(range) => out.push(range.clone()),
-            Content::Inner(children) => children.iter().for_each(|child| leaves(child, out)),
+        match tree {
+            Binary::Leaf(leaf) => out.push(leaf.range()),
+            Binary::Inner { children, .. } => children.iter().for_each(|child| leaves(child, out)),
         }
     }
 
@@ -248,7 +263,7 @@ mod tests {
             triangles: u32::MAX,
             corners: None,
         };
-        let tree = build(&mut items, &params);
+        let (tree, _) = build(&mut items, &params);
         assert!(levels(&tree) <= MOST_LEVELS, "{} levels", levels(&tree));
         let mut ranges = Vec::new();
         leaves(&tree, &mut ranges);

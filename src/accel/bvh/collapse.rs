@@ -1,16 +1,12 @@
 //! From a binary tree to one of eight children a node.
 
-use super::build::{Binary, Content};
-use super::item::half_area;
+use super::build::{Binary, Leaf};
 use super::node::{Child, ChildRef, Node, WIDTH};
 
-/// Makes the nodes of `tree`, the root first. `leaf` makes a leaf of the items in a range and returns it with its box.
-pub fn collapse<N: Node>(
-    tree: &Binary,
-    leaf: &mut impl FnMut(std::ops::Range<usize>) -> (ChildRef, N::Bounds),
-) -> Vec<N> {
+/// Makes the nodes of `tree`, the root first. `leaf` makes a leaf of items and returns it with its box.
+pub fn collapse<N: Node>(tree: &Binary, leaf: &mut impl FnMut(Leaf) -> (ChildRef, N::Bounds)) -> Vec<N> {
     let mut nodes = Vec::new();
-    if let Content::Leaf(_) = tree.content {
+    if let Binary::Leaf(_) = tree {
         let child = emit(tree, &mut nodes, leaf);
         nodes.push(N::new(&[child]));
     } else {
@@ -22,11 +18,11 @@ pub fn collapse<N: Node>(
 fn emit<N: Node>(
     tree: &Binary,
     nodes: &mut Vec<N>,
-    leaf: &mut impl FnMut(std::ops::Range<usize>) -> (ChildRef, N::Bounds),
+    leaf: &mut impl FnMut(Leaf) -> (ChildRef, N::Bounds),
 ) -> (ChildRef, N::Bounds) {
-    let pair = match &tree.content {
-        Content::Leaf(range) => return leaf(range.clone()),
-        Content::Inner(pair) => pair,
+    let pair = match tree {
+        Binary::Leaf(items) => return leaf(*items),
+        Binary::Inner { children, .. } => children,
     };
     let (members, count) = open(pair);
     let index = nodes.len();
@@ -50,12 +46,11 @@ fn open(pair: &[Binary; 2]) -> ([&Binary; WIDTH], usize) {
         let mut largest = None;
         let mut most = f64::NEG_INFINITY;
         for (i, member) in members[..count].iter().enumerate() {
-            if let Content::Inner(inner) = &member.content {
-                let area = half_area(&member.bounds);
-                if largest.is_none() || area > most {
-                    most = area;
-                    largest = Some((i, inner));
-                }
+            if let Binary::Inner { half_area, children } = member
+                && (largest.is_none() || *half_area > most)
+            {
+                most = *half_area;
+                largest = Some((i, children));
             }
         }
         let Some((slot, inner)) = largest else { break };

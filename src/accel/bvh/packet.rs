@@ -4,12 +4,14 @@
 //! by these rays. Where few are left they go on alone. Triangles are tested by the same operations in the same order as by a ray
 //! alone, so that the answers are the same to the last bit.
 
-// What is on the stack below its top was written.
+// Distances are written for the children that are visited only.
 #![allow(unsafe_code)]
+
+mod stack;
 
 use std::mem::MaybeUninit;
 
-use super::build::MOST_LEVELS;
+use self::stack::Stack;
 use super::kernel::Kernel;
 use super::lanes::Lanes;
 use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
@@ -19,9 +21,6 @@ use super::query::{Asked, CULL_SLACK, Candidate, Query};
 use super::traverse::Walk;
 use super::tree::FixedTree;
 use crate::geometry::HitPacket;
-
-/// Entries of a stack.
-const STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
 
 /// As many rays as this, or fewer, go on alone.
 const FEW: u32 = 1;
@@ -38,60 +37,6 @@ pub struct Packet<'a, const N: usize> {
     /// Nearest hits: geometries, primitives, instances.
     pub ids: [[u32; N]; 3],
     asked: Asked<'a>,
-}
-
-/// Something still to be visited.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-struct Entry<const N: usize> {
-    /// Where each ray enters its box; without meaning for occlusion, which does not ask.
-    distance: Row<N>,
-    child: ChildRef,
-    /// Which rays.
-    lanes: u32,
-}
-
-/// What is still to be visited, the nearest on top.
-struct Stack<const N: usize> {
-    entries: [MaybeUninit<Entry<N>>; STACK],
-    depth: usize,
-}
-
-impl<const N: usize> Stack<N> {
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            entries: [const { MaybeUninit::uninit() }; STACK],
-            depth: 0,
-        }
-    }
-
-    /// Puts something on top; without `distance`, its distances are not written.
-    #[inline(always)]
-    fn push(&mut self, child: ChildRef, lanes: u32, distance: Option<&Row<N>>) {
-        let entry = self.entries[self.depth].as_mut_ptr();
-        // SAFETY: it points to an entry of the stack, of which only fields are written.
-        unsafe {
-            (*entry).child = child;
-            (*entry).lanes = lanes;
-            if let Some(distance) = distance {
-                (*entry).distance = *distance;
-            }
-        }
-        self.depth += 1;
-    }
-
-    /// Takes the top off: the child, its rays, and, if that is why it was written, the distances.
-    #[inline(always)]
-    fn pop<const ANY: bool>(&mut self) -> Option<(ChildRef, u32, Option<&Row<N>>)> {
-        self.depth = self.depth.checked_sub(1)?;
-        let entry = self.entries[self.depth].as_ptr();
-        // SAFETY: entries below the top were written, with distances unless `ANY`.
-        unsafe {
-            let distance = if ANY { None } else { Some(&(*entry).distance) };
-            Some(((*entry).child, (*entry).lanes, distance))
-        }
-    }
 }
 
 impl<'a, const N: usize> Packet<'a, N> {

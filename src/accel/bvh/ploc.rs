@@ -10,9 +10,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::bins::extent_of;
-use super::build::{Binary, Content, LEAST_PARALLEL, MOST_LEVELS, is_leaf};
+use super::build::{Binary, LEAST_PARALLEL, Leaf, MOST_LEVELS, is_leaf};
 use super::item::{Box4, Extent, Item};
-use crate::math::Vec3;
+use crate::math::{Bounds3, Vec3};
 
 /// How far along the curve a cluster looks, to either side.
 const RADIUS: usize = 8;
@@ -30,13 +30,6 @@ struct Cluster {
     node: u32,
 }
 
-/// Items that are neighbours on the curve.
-#[derive(Clone, Copy)]
-struct Leaf {
-    first: u32,
-    count: u32,
-}
-
 /// Two clusters that became one.
 #[derive(Clone, Copy)]
 struct Pair {
@@ -47,11 +40,12 @@ struct Pair {
 }
 
 /// Builds a tree over `items`, of which there is at least one, and puts them into another order. `None` if the tree would be too deep, or
-/// take too long, for boxes of unusual sizes. Of `triangles` see [`BuildParams`](super::build::BuildParams).
-pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<Binary> {
+/// take too long, for boxes of unusual sizes. With a box around all. Of `triangles` see [`BuildParams`](super::build::BuildParams).
+pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<(Binary, Bounds3)> {
     let codes = sort(items);
     let mut leaves = Vec::with_capacity(items.len() / 2);
     divide(items, &codes, 0..items.len(), triangles, &mut leaves);
+    drop(codes);
     let mut clusters: Vec<Cluster> = leaves
         .iter()
         .enumerate()
@@ -61,7 +55,6 @@ pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<Binary> {
         })
         .collect();
     let mut tree = Tree {
-        items,
         leaves,
         pairs: Vec::with_capacity(clusters.len()),
     };
@@ -74,16 +67,12 @@ pub fn build(items: &mut Vec<Item>, triangles: u32) -> Option<Binary> {
             return None;
         }
     }
-    let root = clusters.first()?.node;
-    (tree.levels(root) <= MOST_LEVELS).then(|| tree.binary(root))
-}
-
-fn range_of(leaf: Leaf) -> Range<usize> {
-    leaf.first as usize..(leaf.first + leaf.count) as usize
+    let Cluster { bounds, node: root } = *clusters.first()?;
+    (tree.levels(root) <= MOST_LEVELS).then(|| (tree.binary(root), bounds.bounds()))
 }
 
 fn bounds_of(items: &[Item], leaf: Leaf) -> Box4 {
-    let boxes = items[range_of(leaf)].iter().map(Item::box4);
+    let boxes = items[leaf.range()].iter().map(Item::box4);
     boxes.fold(Box4::EMPTY, Box4::union)
 }
 
@@ -184,13 +173,12 @@ fn nearest(clusters: &[Cluster]) -> Vec<u32> {
     chunks.concat()
 }
 
-struct Tree<'a> {
-    items: &'a [Item],
+struct Tree {
     leaves: Vec<Leaf>,
     pairs: Vec<Pair>,
 }
 
-impl Tree<'_> {
+impl Tree {
     fn pair(&self, node: u32) -> Option<&Pair> {
         (node as usize)
             .checked_sub(self.leaves.len())
@@ -233,11 +221,7 @@ impl Tree<'_> {
     /// The tree below a node.
     fn binary(&self, node: u32) -> Binary {
         let Some(pair) = self.pair(node) else {
-            let leaf = self.leaves[node as usize];
-            return Binary {
-                bounds: bounds_of(self.items, leaf).bounds(),
-                content: Content::Leaf(range_of(leaf)),
-            };
+            return Binary::Leaf(self.leaves[node as usize]);
         };
         let [left, right] = pair.children;
         let children = if pair.leaves as usize > LEAST_PARALLEL {
@@ -245,9 +229,9 @@ impl Tree<'_> {
         } else {
             (self.binary(left), self.binary(right))
         };
-        Binary {
-            bounds: pair.bounds.bounds(),
-            content: Content::Inner(Box::new(children.into())),
+        Binary::Inner {
+            half_area: pair.bounds.half_area(),
+            children: Box::new(children.into()),
         }
     }
 }

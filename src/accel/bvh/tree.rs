@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::build::{self, BuildParams};
+use super::build::{self, Binary, BuildParams, Leaf};
 use super::collapse::collapse;
 use super::item::Item;
-use super::leaf::{Block, FixedBlock, MovingBlock};
+use super::leaf::{Block, FixedBlock, LANES, MovingBlock};
 use super::node::{Child, ChildRef, FixedNode, MovingNode, Node};
 use super::ploc;
 use super::ray::MARGIN;
@@ -139,11 +139,11 @@ fn fixed_tree(
     boxes.extend_from_slice(instances);
     let first_instance = names.len() + analytic.len();
     let triangles = Triangles { world, names: &names };
-    let (tree, items) = binary(boxes, names.len(), quality, Some(&triangles))?;
+    let Built { tree, bounds, items } = binary(boxes, names.len(), quality, Some(&triangles))?;
 
     let mut leaves = Vec::new();
-    let nodes = collapse(&tree, &mut |range| {
-        let items = &items[range.clone()];
+    let nodes = collapse(&tree, &mut |leaf| {
+        let items = &items[leaf.range()];
         let first = items[0].index() as usize;
         if first >= names.len() {
             let child = if first < first_instance {
@@ -157,21 +157,32 @@ fn fixed_tree(
             .iter()
             .map(|item| triangles.fragment_bounds(&item.box4().bounds(), item.index()))
             .fold(Bounds3::EMPTY, Bounds3::union);
-        leaves.push(range);
+        leaves.push(leaf);
         (ChildRef::new(Child::Block(leaves.len() - 1)), bounds)
     });
-    let block = |range: &std::ops::Range<usize>| {
+    // Blocks are the most of a tree: what is done with makes room for them.
+    drop(tree);
+    let in_no_block = (GeometryId(0), PrimitiveId(0));
+    let name = |item: &Item| names.get(item.index() as usize).copied().unwrap_or(in_no_block);
+    let ordered: Vec<_> = items.par_iter().map(name).collect();
+    drop((items, names));
+    let block = |leaf: &Leaf| {
+        let triangles = &ordered[leaf.range()];
+        let mut members = [triangles[0]; LANES];
+        members[..triangles.len()].copy_from_slice(triangles);
         // Fragments of one triangle may share a leaf.
-        let mut members: Vec<_> = items[range.clone()]
-            .iter()
-            .map(|item| names[item.index() as usize])
-            .collect();
         members.sort_unstable_by_key(|(geometry, primitive)| (geometry.0, primitive.0));
-        members.dedup();
-        FixedBlock::new(world, &members, 0)
+        let mut count = 1;
+        for i in 1..LANES {
+            if members[i] != members[count - 1] {
+                members[count] = members[i];
+                count += 1;
+            }
+        }
+        FixedBlock::new(world, &members[..count], 0)
     };
     Some(Tree {
-        bounds: tree.bounds,
+        bounds,
         nodes,
         blocks: leaves.par_iter().with_min_len(256).map(block).collect(),
         analytic,
@@ -220,8 +231,8 @@ fn segment_trees(world: &World, meshes: &[GeometryId], segments: usize, quality:
     let shared = if quality == BuildQuality::High { None } else { shape(0) };
     let tree = |segment: usize| {
         let own = if shared.is_some() { None } else { shape(segment) };
-        let (tree, items) = shared.as_ref().or(own.as_ref())?;
-        Some(moving_tree(world, &names, segment, tree, items))
+        let built = shared.as_ref().or(own.as_ref())?;
+        Some(moving_tree(world, &names, segment, built))
     };
     (0..segments).into_par_iter().filter_map(tree).collect()
 }
@@ -233,36 +244,38 @@ fn ends(world: &World, (id, primitive): (GeometryId, PrimitiveId), segment: usiz
 }
 
 /// A tree of the shape of `tree` over the triangles as they are in a segment.
-fn moving_tree(
-    world: &World,
-    names: &[(GeometryId, PrimitiveId)],
-    segment: usize,
-    tree: &build::Binary,
-    items: &[Item],
-) -> MovingTree {
+fn moving_tree(world: &World, names: &[(GeometryId, PrimitiveId)], segment: usize, built: &Built) -> MovingTree {
     let mut blocks = Vec::new();
-    let nodes = collapse(tree, &mut |range| {
-        let members: Vec<_> = items[range].iter().map(|item| names[item.index() as usize]).collect();
+    let nodes = collapse(&built.tree, &mut |leaf| {
+        let items = &built.items[leaf.range()];
+        let members: Vec<_> = items.iter().map(|item| names[item.index() as usize]).collect();
         blocks.push(MovingBlock::new(world, &members, segment));
         let bounds = members.iter().map(|&name| ends(world, name, segment));
         let bounds = bounds.fold([Bounds3::EMPTY; 2], MovingNode::union);
         (ChildRef::new(Child::Block(blocks.len() - 1)), bounds)
     });
     Tree {
-        bounds: tree.bounds,
+        bounds: built.bounds,
         nodes,
         blocks,
         analytic: Vec::new(),
     }
 }
 
-/// A binary tree over boxes, the first `triangles` of which are those of triangles; with the items, where its leaves say.
+/// A binary tree, a box around all that is in it, and the items, where its leaves say.
+struct Built {
+    tree: Binary,
+    bounds: Bounds3,
+    items: Vec<Item>,
+}
+
+/// A binary tree over boxes, the first `triangles` of which are those of triangles; `None` over nothing.
 fn binary(
     boxes: Vec<Bounds3>,
     triangles: usize,
     quality: BuildQuality,
     corners: Option<&Triangles<'_>>,
-) -> Option<(build::Binary, Vec<Item>)> {
+) -> Option<Built> {
     // Indices are below 2^32: each box is of a primitive or an instance, whose own numbers are; a sum that is not is more than
     // memory holds.
     let mut items: Vec<Item> = boxes
@@ -275,9 +288,9 @@ fn binary(
     }
     let triangles = triangles as u32;
     if quality == BuildQuality::Low
-        && let Some(tree) = ploc::build(&mut items, triangles)
+        && let Some((tree, bounds)) = ploc::build(&mut items, triangles)
     {
-        return Some((tree, items));
+        return Some(Built { tree, bounds, items });
     }
     let (bins, corners) = match quality {
         BuildQuality::Low | BuildQuality::Medium => (16, None),
@@ -288,6 +301,6 @@ fn binary(
         triangles,
         corners,
     };
-    let tree = build::build(&mut items, &params);
-    Some((tree, items))
+    let (tree, bounds) = build::build(&mut items, &params);
+    Some(Built { tree, bounds, items })
 }

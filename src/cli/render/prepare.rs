@@ -6,9 +6,11 @@ use std::time::Instant;
 use super::Job;
 use super::strategies::StrategyOutputs;
 use crate::accel::BuildOptions;
+use crate::cli::memory;
 use crate::cli::report::Reporter;
 use crate::desc::{self, FilmKind, ParseOptions, SceneDesc};
 use crate::error::{Error, Result};
+use crate::film::Film;
 use crate::image_io::PendingOutput;
 use crate::scene::{Scene, SceneOptions, View, ViewOverrides};
 use crate::spectrum::ColorMode;
@@ -36,7 +38,7 @@ impl Job<'_> {
             lenient: args.lenient,
             defines: args.defines.clone(),
         };
-        let desc = self.pool.install(|| match &args.env {
+        let mut desc = self.pool.install(|| match &args.env {
             None => desc::load(path, &options),
             Some(environment) if desc::bare::is_mesh(path) => desc::bare::load(path, Some(environment), &options),
             Some(_) => Err(Error::Usage(format!(
@@ -64,6 +66,7 @@ impl Job<'_> {
         for view_desc in &desc.views {
             let view = View::build(&desc, view_desc, args.color.into(), &overrides)?;
             self.check_film(&desc, &view)?;
+            check_memory(&view, self.integrator(&desc)?.splats())?;
             let wanted = args.spp.unwrap_or(view_desc.sampler.pixel_samples);
             if view.sampler.samples_per_pixel() != wanted {
                 let rounded = view.sampler.samples_per_pixel();
@@ -88,7 +91,11 @@ impl Job<'_> {
             },
             color: args.color.into(),
         };
-        let scene = self.pool.install(|| Scene::build(&desc, &options))?;
+        // A profile builds once more.
+        let scene = self.pool.install(|| match args.profile {
+            true => Scene::build(&desc, &options),
+            false => Scene::build_taking_shapes(&mut desc, &options),
+        })?;
         let integrator = self.integrator(&desc)?;
         if let Some(missing) = integrator.missing(&scene) {
             return Err(Error::Usage(format!("{}: {missing}", path.display())));
@@ -174,5 +181,25 @@ pub(super) fn check_placeholders(template: &str) -> Result<()> {
             "{template}: unknown placeholder {{{name}}}: expected {{scene}} or {{camera}}"
         ))),
         None => Ok(()),
+    }
+}
+
+/// Refuses a film that memory cannot hold.
+fn check_memory(view: &View, takes_splats: bool) -> Result<()> {
+    // Beside the sums there are the pixels as they are written.
+    let wanted = view
+        .crop
+        .area()
+        .saturating_mul(Film::bytes_per_pixel(takes_splats) + 16);
+    match memory::available_bytes() {
+        Some(available) if wanted > available => Err(Error::Usage(format!(
+            "the {}x{} pixels of the camera `{}` take {} of memory, and there are {}: a smaller --resolution or --crop takes less",
+            view.crop.width(),
+            view.crop.y1 - view.crop.y0,
+            view.name,
+            memory::in_words(wanted),
+            memory::in_words(available)
+        ))),
+        _ => Ok(()),
     }
 }

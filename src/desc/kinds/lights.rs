@@ -15,7 +15,16 @@ pub static LIGHTS: [Entry; 7] = [
         "LightSource",
         "spot",
         "From a point into a cone with a smooth rim",
-        &[&FROM, &TO, &CONE_ANGLE, &CONE_DELTA, &INTENSITY, &POWER, &SCALE],
+        &[
+            &FROM,
+            &TO,
+            &CONE_ANGLE,
+            &CONE_DELTA,
+            &FALLOFF,
+            &INTENSITY,
+            &POWER,
+            &SCALE,
+        ],
     ),
     Entry::new(
         "LightSource",
@@ -96,6 +105,11 @@ pub static CONE_DELTA: Parameter = Parameter::float(
     "The part of `coneangle` over which the light falls off; no more than that",
 )
 .unit("degrees");
+pub static FALLOFF: Parameter = Parameter::choice(
+    "falloff",
+    &["smooth", "linear"],
+    "By a smooth step over the cosine, or in proportion to the angle to the rim, as in Mitsuba (an extension)",
+);
 pub static FOV: Parameter = Parameter::float(
     "fov",
     90.0,

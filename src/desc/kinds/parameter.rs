@@ -156,6 +156,8 @@ pub enum ParameterKind {
         /// If none is given, at all wavelengths.
         default: f64,
     },
+    /// `string`: the name of a named material; there is no default.
+    Material,
     /// `string`: the names of two named materials; there is no default.
     TwoMaterials,
     /// A parameter of pbrt's, of this type, that has no effect; not more than its presence is looked at.
@@ -237,7 +239,9 @@ impl ParameterKind {
             Self::Vector(_) => &["vector3"],
             Self::Point(_) | Self::Points(_) => &["point3"],
             Self::Emission | Self::Spectrum { .. } => &["rgb", "spectrum", "blackbody"],
-            Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::TwoMaterials => &["string"],
+            Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::Material | Self::TwoMaterials => {
+                &["string"]
+            }
             Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
             Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
             Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } | Self::Pigment => &["float", "texture"],
@@ -257,10 +261,11 @@ impl ParameterKind {
             Self::Integer { range, .. } => format!("{} to {}", range.0, range.1),
             Self::Float { range, .. } | Self::FloatTexturedIn { range, .. } => range.text().to_owned(),
             Self::Reflectance { .. } => FloatRange::Unit.text().to_owned(),
-            Self::MetalIndex { .. } | Self::GlassIndex { .. } => FloatRange::Positive.text().to_owned(),
-            Self::MetalAbsorption { .. } | Self::Absorption | Self::Pigment => {
+            Self::GlassIndex { .. } => FloatRange::Positive.text().to_owned(),
+            Self::MetalIndex { .. } | Self::MetalAbsorption { .. } | Self::Absorption | Self::Pigment => {
                 FloatRange::NotNegative.text().to_owned()
             }
+            Self::Material => "a name".to_owned(),
             Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Encoding { .. } => "sRGB, linear, \"gamma G\" with G more than 0".to_owned(),
@@ -296,6 +301,7 @@ impl ParameterKind {
             Self::Choice { default, .. } => (*default).to_owned(),
             Self::Emission => "the colour space's illuminant".to_owned(),
             Self::File
+            | Self::Material
             | Self::TwoMaterials
             | Self::Points(_)
             | Self::Photometric

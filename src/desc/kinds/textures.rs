@@ -137,8 +137,8 @@ pub static DIMENSION: Parameter = Parameter::integer(
 );
 pub static MAPPING: Parameter = Parameter::choice(
     "mapping",
-    &["uv", "spherical", "cylindrical", "planar"],
-    "Where texture coordinates come from: the surface, or the position in texture space",
+    &["uv", "spherical", "cylindrical", "planar", "affine"],
+    "Where texture coordinates come from: the surface, the position in texture space, or by a matrix from the surface (affine, an extension)",
 );
 pub static USCALE: Parameter = Parameter::float("uscale", 1.0, FloatRange::Any, "uv: factor of u");
 pub static VSCALE: Parameter = Parameter::float("vscale", 1.0, FloatRange::Any, "uv: factor of v");
@@ -146,23 +146,23 @@ pub static UDELTA: Parameter = Parameter::float(
     "udelta",
     0.0,
     FloatRange::Any,
-    "uv and planar: added to the first coordinate",
+    "uv, planar and affine: added to the first coordinate",
 );
 pub static VDELTA: Parameter = Parameter::float(
     "vdelta",
     0.0,
     FloatRange::Any,
-    "uv and planar: added to the second coordinate",
+    "uv, planar and affine: added to the second coordinate",
 );
 pub static V1: Parameter = Parameter::new(
     "v1",
     ParameterKind::Vector([1.0, 0.0, 0.0]),
-    "planar: the first coordinate is the dot product with this",
+    "planar: the first coordinate is the dot product with this; affine: its with (u, v, 0)",
 );
 pub static V2: Parameter = Parameter::new(
     "v2",
     ParameterKind::Vector([0.0, 1.0, 0.0]),
-    "planar: the second coordinate is the dot product with this",
+    "planar: the second coordinate is the dot product with this; affine: its with (u, v, 0)",
 );
 pub static FILENAME: Parameter = Parameter::file("filename", "A PNG, JPEG, TGA, HDR, EXR or PFM file");
 pub static FILTER: Parameter = Parameter::new(
@@ -181,8 +181,8 @@ pub static MAXANISOTROPY: Parameter = Parameter::float(
 );
 pub static WRAP: Parameter = Parameter::choice(
     "wrap",
-    &["repeat", "black", "clamp", "octahedralsphere"],
-    "What is beyond the image's edges",
+    &["repeat", "black", "clamp", "octahedralsphere", "mirror"],
+    "What is beyond the image's edges (mirror, the image and its mirror image in turn, is an extension)",
 );
 pub static SCALE: Parameter = Parameter::float(
     "scale",

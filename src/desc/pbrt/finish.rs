@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::builder::Builder;
 use super::files::Context;
+use super::nested;
 use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
 use super::suggest;
@@ -118,46 +119,8 @@ fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> Vec<MaterialDesc>
         let message = format!("there is no named material `{name}`");
         report.unknown(span, message, "the default material stands in", &name, &names);
     }
-    check_mixes(&materials, report);
+    nested::check(&materials, report);
     materials
-}
-
-/// How many mixes may contain one another in a row.
-const DEEPEST_MIX: usize = 64;
-
-/// Complains about mixes of what is no surface, and of themselves.
-fn check_mixes(materials: &[MaterialDesc], report: &mut Report) {
-    for material in materials {
-        let MaterialKind::Mix { materials: parts, .. } = &material.kind else {
-            continue;
-        };
-        let is_interface = |id: &MaterialId| matches!(materials[id.0 as usize].kind, MaterialKind::Interface);
-        if parts.iter().any(is_interface) {
-            report.error(
-                material.span,
-                "a mix cannot contain the material `interface`, which is no surface",
-            );
-        }
-    }
-    // Each round settles the mixes of what is settled; what a cycle needs never is.
-    let mut settled: Vec<bool> = vec![false; materials.len()];
-    for _ in 0..=DEEPEST_MIX {
-        let now: Vec<bool> = materials
-            .iter()
-            .map(|material| match &material.kind {
-                MaterialKind::Mix { materials: parts, .. } => parts.iter().all(|id| settled[id.0 as usize]),
-                _ => true,
-            })
-            .collect();
-        if now == settled {
-            break;
-        }
-        settled = now;
-    }
-    for (material, _) in materials.iter().zip(&settled).filter(|(_, settled)| !**settled) {
-        let message = format!("this mix contains itself, or more than {DEEPEST_MIX} mixes in a row");
-        report.error(material.span, message);
-    }
 }
 
 /// Reads the mesh files, in parallel. One that cannot be read is complained about and empty.

@@ -1,5 +1,6 @@
 //! The files being read: the main one, and those that `Include` and `Import` put on top.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,6 +12,10 @@ use crate::error::Span;
 #[derive(Debug, Default)]
 pub(super) struct Input {
     open: Vec<OpenFile>,
+    /// All files so far, without links.
+    seen: HashSet<PathBuf>,
+    /// How often a file was opened that had been read before, and how many bytes that was.
+    again: (usize, usize),
 }
 
 /// A file being read.
@@ -25,6 +30,9 @@ pub(super) struct OpenFile {
 
 /// More files cannot be open at once.
 const DEEPEST: usize = 64;
+
+/// Files that are read again, and their bytes: each of a few files that includes the next one twice would never come to an end.
+const MOST_AGAIN: (usize, usize) = (20_000, 1 << 30);
 
 impl Input {
     /// The file that is read now.
@@ -48,15 +56,24 @@ impl Input {
             format!("more than {DEEPEST} files include one another")
         } else {
             match context.read_text(&path) {
-                Ok(text) => {
+                Ok(text) if self.may_read(canonical, text.len()) => {
                     self.push(context, &path, text, is_import);
                     return true;
                 }
+                Ok(_) => "files are included again and again, without end as it seems".to_owned(),
                 Err(e) => format!("cannot read {}: {e}", path.display()),
             }
         };
         context.report.error(span, problem);
         false
+    }
+
+    /// Counts a file of this length; false if it makes too much of those that are read again.
+    fn may_read(&mut self, path: PathBuf, length: usize) -> bool {
+        if !self.seen.insert(path) {
+            self.again = (self.again.0 + 1, self.again.1.saturating_add(length));
+        }
+        self.again.0 <= MOST_AGAIN.0 && self.again.1 <= MOST_AGAIN.1
     }
 
     /// Closes the current file.

@@ -10,7 +10,7 @@ use super::reader::{ParamReader, unknown_type};
 use super::report::Report;
 use super::spectrum::Use;
 use crate::desc::kinds::lights::{
-    AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY,
+    AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FALLOFF, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY,
     IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
 };
 use crate::desc::{
@@ -141,7 +141,10 @@ fn spot(reader: &mut ParamReader<'_>) -> LightKind {
         to,
         angle,
         delta,
-        falloff: SpotFalloff::Smooth,
+        falloff: match reader.choice_by(&FALLOFF) {
+            "linear" => SpotFalloff::Linear,
+            _ => SpotFalloff::Smooth,
+        },
     }
 }
 

@@ -8,7 +8,7 @@ use super::world::{Materials, default_material};
 use crate::desc::kinds::materials as kinds;
 use crate::desc::{
     CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MATERIALS, MaterialDesc, MaterialId,
-    MaterialKind, MeasuredDesc, Parameter, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
+    MaterialKind, MeasuredDesc, Parameter, PlasticDesc, PrincipledDesc, ReliefDesc, RoughnessDesc, Textured, rgl,
 };
 use crate::error::Span;
 use crate::image_io::Encoding;
@@ -143,6 +143,18 @@ fn read_kind(reader: &mut ParamReader<'_>, materials: &mut Materials, kind: &str
             Some(desc) => MaterialKind::Measured(Arc::new(desc)),
             None => default_material(reader.span).kind,
         },
+        "plastic" => MaterialKind::Plastic(PlasticDesc {
+            diffuse_reflectance: reader.spectrum_textured_by(&kinds::REFLECTANCE),
+            specular_reflectance: reader.spectrum_textured_by(&kinds::SPECULAR_REFLECTANCE),
+            eta: reader.float_by(&kinds::PLASTIC_ETA) as f32,
+            nonlinear: reader.bool_by(&kinds::NONLINEAR),
+            roughness: roughness(reader, &PLAIN),
+        }),
+        "sided" => MaterialKind::Sided {
+            front: part(reader, materials, &kinds::FRONT),
+            back: part(reader, materials, &kinds::BACK),
+        },
+        "tinted" => tinted(reader, materials),
         "interface" => MaterialKind::Interface,
         _ => default_material(reader.span).kind,
     }
@@ -193,7 +205,7 @@ fn roughness(reader: &mut ParamReader<'_>, [both, u, v]: &RoughnessNames) -> Rou
             "beckmann" => DistributionDesc::Beckmann,
             _ => DistributionDesc::Ggx,
         },
-        separable_masking: false,
+        separable_masking: reader.choice_by(&kinds::MASKING) == "separable",
     }
 }
 
@@ -228,6 +240,31 @@ fn mix(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind 
     MaterialKind::Mix {
         materials: slots.unwrap_or([MaterialId(0); 2]),
         amount: reader.float_textured_by(&kinds::MIX_AMOUNT),
+    }
+}
+
+/// A material by its name, if there is one. As in a mix, the id counts slots until the end.
+fn part(reader: &mut ParamReader<'_>, materials: &mut Materials, parameter: &'static Parameter) -> Option<MaterialId> {
+    let (name, span) = reader.string(parameter.name)?;
+    Some(MaterialId(materials.named(name, span) as u32))
+}
+
+fn tinted(reader: &mut ParamReader<'_>, materials: &mut Materials) -> MaterialKind {
+    if !reader.has(kinds::TINTED.name) {
+        let span = reader.span;
+        let message = "a tinted material names the one that it tints: `\"string material\" \"glass\"`";
+        reader.report().error(span, message);
+    }
+    let material = part(reader, materials, &kinds::TINTED);
+    let [reflectance, transmittance] =
+        [&kinds::TINT_REFLECTED, &kinds::TINT_TRANSMITTED].map(|tint| reader.spectrum_textured_by(tint));
+    match material {
+        Some(material) => MaterialKind::Tinted {
+            material,
+            reflectance,
+            transmittance,
+        },
+        None => default_material(reader.span).kind,
     }
 }
 
@@ -299,9 +336,9 @@ fn principled(reader: &mut ParamReader<'_>) -> PrincipledDesc {
         sheen_tint: textured(&kinds::SHEEN_TINT),
         clearcoat: textured(&kinds::CLEARCOAT),
         clearcoat_gloss: textured(&kinds::CLEARCOAT_GLOSS),
-        flatness: Textured::Value(0.0),
-        as_in_mitsuba: false,
+        flatness: textured(&kinds::FLATNESS),
         base_color: reader.spectrum_textured_by(&kinds::BASE_COLOR),
+        as_in_mitsuba: reader.bool_by(&kinds::ADDITIVE),
         eta: if given {
             ((1.0 + reflected) / (1.0 - reflected)) as f32
         } else {

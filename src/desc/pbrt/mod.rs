@@ -18,6 +18,7 @@ mod integrator;
 mod light;
 mod material;
 mod medium;
+mod nested;
 mod options;
 mod params;
 mod reader;

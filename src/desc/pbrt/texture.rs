@@ -1,6 +1,6 @@
 //! `Texture`.
 
-use glam::{DAffine3, DVec3, Vec2};
+use glam::{DAffine3, DVec3, Mat2, Vec2};
 
 use super::reader::{ParamReader, unknown_type};
 use super::texture_names::stand_in;
@@ -174,6 +174,10 @@ fn mapping(reader: &mut ParamReader<'_>) -> MappingDesc {
         "spherical" => MappingDesc::Spherical,
         "cylindrical" => MappingDesc::Cylindrical,
         "planar" => MappingDesc::Planar { vectors, delta },
+        "affine" => MappingDesc::Affine {
+            matrix: Mat2::from_cols(vectors[0].truncate(), vectors[1].truncate()).transpose(),
+            delta,
+        },
         _ => MappingDesc::Uv { scale, delta },
     }
 }
@@ -198,6 +202,7 @@ fn image_map(reader: &mut ParamReader<'_>) -> Option<ImageMapDesc> {
         "black" => WrapDesc::Black,
         "clamp" => WrapDesc::Clamp,
         "octahedralsphere" => WrapDesc::OctahedralSphere,
+        "mirror" => WrapDesc::Mirror,
         _ => WrapDesc::Repeat,
     };
     let mapping = mapping(reader);

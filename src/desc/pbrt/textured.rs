@@ -228,10 +228,8 @@ impl ParamReader<'_> {
             ParameterKind::Reflectance { default } => self
                 .reflectance_by(parameter)
                 .unwrap_or_else(|| Textured::Value(constant(default.unwrap_or_default(), span))),
-            ParameterKind::MetalIndex { default } => self
-                .spectrum_textured(parameter.name, Use::Ior)
-                .unwrap_or_else(|| Textured::Value(named(default, span))),
-            ParameterKind::MetalAbsorption { default } => self
+            // An index of 0 + i, for one, reflects everything.
+            ParameterKind::MetalIndex { default } | ParameterKind::MetalAbsorption { default } => self
                 .spectrum_textured(parameter.name, Use::Absorption)
                 .unwrap_or_else(|| Textured::Value(named(default, span))),
             _ => Textured::Value(constant(0.0, span)),

@@ -40,13 +40,19 @@ impl Chances {
     /// What happens next has the density `densities` by who decides: their mean, which is to be divided by.
     #[inline]
     fn meet(&mut self, densities: SampledSpectrum) -> f32 {
-        let joint = self.relative * densities;
-        let candidates = usize::from(self.candidates);
-        let mean = joint.0[..candidates].iter().sum::<f32>() / candidates as f32;
+        let mean = self.mean(densities);
         if mean > 0.0 {
-            self.relative = joint * (1.0 / mean);
+            self.relative = self.relative * densities * (1.0 / mean);
         }
         mean
+    }
+
+    /// The mean of the densities by who decides, of something that may happen next.
+    #[inline]
+    pub fn mean(&self, densities: SampledSpectrum) -> f32 {
+        let candidates = usize::from(self.candidates);
+        let joint = self.relative * densities;
+        joint.0[..candidates].iter().sum::<f32>() / candidates as f32
     }
 
     /// Passes `distance` of a medium, which may be infinite, without a collision: what is left of light that goes there in each lane, and
@@ -86,12 +92,23 @@ pub(super) struct Flight {
     left: Option<f32>,
 }
 
+/// A collision that scatters.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Collision {
+    /// The distance.
+    pub t: f32,
+    /// Of the throughput.
+    pub factor: SampledSpectrum,
+    /// Its density by distance: the mean by who might decide.
+    pub density: f32,
+}
+
 /// Where a flight through one medium has ended.
 pub(super) enum Arrival {
     /// At the end of it; the factor of the throughput.
     Through(SampledSpectrum),
-    /// In a collision that scatters, at this distance; the factor of the throughput.
-    Collision(f32, SampledSpectrum),
+    /// In a collision that scatters.
+    Collision(Collision),
 }
 
 impl Flight {
@@ -117,7 +134,11 @@ impl Flight {
                 let t = left / sigma;
                 let transmittance = at.transmittance(t);
                 let mean = chances.meet(at.sigma_t * transmittance);
-                return Arrival::Collision(t, at.sigma_s * transmittance * mean.recip());
+                return Arrival::Collision(Collision {
+                    t,
+                    factor: at.sigma_s * transmittance * mean.recip(),
+                    density: mean,
+                });
             }
             self.left = Some(left - sigma * distance.min(f32::MAX));
         }

@@ -2,13 +2,15 @@
 //!
 //! At each event, of a surface or of a medium, light is looked for as `path` does it: by points of lights, whose light is weakened on its
 //! way (`shadows.rs`), and by the direction that the path takes anyway. How far a path flies is drawn by its optical depth
-//! (`flight.rs`). Emission of media is added in closed form along each flight, not only where it ends. A boundary without a surface
+//! (`flight.rs`); what comes from points is looked for between its ends as well (`equiangular.rs`). Emission of media is added in closed form along each flight, not only where it ends. A boundary without a surface
 //! does not count as an event.
 
+mod equiangular;
 mod flight;
 mod shadows;
 
-use flight::{Arrival, Chances, Flight};
+use equiangular::{Passage, Segment, density_along};
+use flight::{Arrival, Chances, Collision, Flight};
 use shadows::{LightOnItsWay, MediaShadows};
 
 use super::RenderStats;
@@ -24,6 +26,7 @@ use crate::light::LightEnd;
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::math::Vec3;
 use crate::medium::{HenyeyGreenstein, MediumId};
+use crate::sampling::power_heuristic;
 use crate::scene::{Scene, View};
 use crate::spectrum::SampledSpectrum;
 
@@ -48,7 +51,24 @@ type VolumeStage<'a, 's> = Stage<'a, 's, VolumePath>;
 #[derive(Clone, Copy)]
 enum Scatterer<'a> {
     Surface(&'a SurfaceInteraction, &'a Bsdf<'a>),
-    Medium { p: Vec3, wo: Vec3, phase: HenyeyGreenstein },
+    Medium(&'a Encounter),
+}
+
+/// A flight that ended in a medium.
+struct Encounter {
+    segment: Segment,
+    collision: Collision,
+    phase: HenyeyGreenstein,
+}
+
+impl Encounter {
+    fn p(&self) -> Vec3 {
+        self.segment.at(self.collision.t)
+    }
+
+    fn wo(&self) -> Vec3 {
+        -self.segment.direction
+    }
 }
 
 /// A scattering event.
@@ -93,31 +113,22 @@ impl Estimator for VolumePath {
         let slot = &mut stage.slots[lane.slot as usize];
         let mut flight = lane.state.flight.unwrap_or_else(|| start_flight(scene, slot, &lane));
         let distance = vertex.surface.map_or(f32::INFINITY, |si| si.p.distance(ray.origin));
-        if let Some(id) = lane.state.medium {
-            let medium = scene.medium(id);
-            let at = medium.at(&slot.lambda);
-            slot.l += lane.beta * at.emission(distance);
-            match (flight.fly(medium, &at, distance, numbers.connections), medium.phase) {
-                (Arrival::Collision(t, factor), Some(phase)) => {
-                    lane.beta *= factor;
-                    let (p, wo) = (ray.origin + ray.direction * t, -ray.direction);
-                    let event = Event {
-                        lane: &lane,
-                        flight,
-                        by: Scatterer::Medium { p, wo, phase },
-                        numbers,
-                        time: ray.time,
-                        cone: lane.cone.after(t),
-                    };
-                    return self.scatter(stage, &event);
-                }
-                (Arrival::Through(factor) | Arrival::Collision(_, factor), _) => lane.beta *= factor,
-            }
-            if lane.beta.is_black() {
-                return;
-            }
+        let segment = Segment::of(ray, distance);
+        if let Some(encounter) = self.cross(stage, &mut lane, &mut flight, &segment, &vertex) {
+            let event = Event {
+                lane: &lane,
+                flight,
+                by: Scatterer::Medium(&encounter),
+                numbers,
+                time: ray.time,
+                cone: lane.cone.after(encounter.collision.t),
+            };
+            return self.scatter(stage, &event);
         }
-        let direct = self.0.direct_light();
+        if lane.beta.is_black() {
+            return;
+        }
+        let (slot, direct) = (&mut stage.slots[lane.slot as usize], self.0.direct_light());
         let origin = lane.state.origin.after(flight.chances.passed());
         let Some(si) = vertex.surface else {
             slot.l += lane.beta * direct.environment(scene, &origin, ray, &slot.lambda);
@@ -149,6 +160,48 @@ impl Estimator for VolumePath {
 }
 
 impl VolumePath {
+    /// Flies along a segment, through a medium if there is one: adds what that emits and what it scatters of the light of points, and
+    /// weakens what the path carries. Where it ends, unless that is at the end of the segment.
+    fn cross(
+        &self,
+        stage: &mut VolumeStage<'_, '_>,
+        lane: &mut TravelLane,
+        flight: &mut Flight,
+        segment: &Segment,
+        vertex: &Vertex<'_, Traveller>,
+    ) -> Option<Encounter> {
+        let medium = stage.scene.medium(lane.state.medium?);
+        let slot = &mut stage.slots[lane.slot as usize];
+        let at = medium.at(&slot.lambda);
+        slot.l += lane.beta * at.emission(segment.length);
+        if let Some(phase) = medium.phase {
+            let passage = Passage {
+                lane,
+                flight: *flight,
+                at: &at,
+                phase,
+                segment: *segment,
+                numbers: vertex.numbers,
+                time: vertex.ray.time,
+            };
+            self.look_along(stage, &passage);
+        }
+        match flight.fly(medium, &at, segment.length, vertex.numbers.connections) {
+            Arrival::Through(factor) => {
+                lane.beta *= factor;
+                None
+            }
+            Arrival::Collision(collision) => {
+                lane.beta *= collision.factor;
+                medium.phase.map(|phase| Encounter {
+                    segment: *segment,
+                    collision,
+                    phase,
+                })
+            }
+        }
+    }
+
     /// Goes on from a scattering event, once or, where the path splits, several times.
     fn scatter(&self, stage: &mut VolumeStage<'_, '_>, event: &Event<'_>) {
         if self.0.max_depth == Some(stage.depth) {
@@ -192,22 +245,28 @@ impl VolumePath {
         let lambda = &stage.slots[lane.slot as usize].lambda;
         let found = match event.by {
             Scatterer::Surface(si, bsdf) => direct.look_from_surface(scene, si, bsdf, numbers, lambda),
-            Scatterer::Medium { p, wo, phase } => {
-                let from = Viewpoint { p, n: Vec3::ZERO, time };
-                direct.look(scene, &from, numbers, lambda, |wi| {
-                    let pdf = phase.pdf(wo, wi);
+            Scatterer::Medium(encounter) => {
+                let (p, n) = (encounter.p(), Vec3::ZERO);
+                direct.look(scene, &Viewpoint { p, n, time }, numbers, lambda, |wi| {
+                    let pdf = encounter.phase.pdf(encounter.wo(), wi);
                     Some((SampledSpectrum::splat(pdf.0), pdf))
                 })
             }
         };
-        let Some(found) = found else { return };
+        let Some(mut found) = found else { return };
         let wi = found.sample.wi;
         let (ray, medium) = match event.by {
             Scatterer::Surface(si, _) => (
                 shadow_ray(si, wi, found.sample.end),
                 scene.medium_beyond(si, wi, lane.state.medium),
             ),
-            Scatterer::Medium { p, .. } => (ray_through_space(p, wi, found.sample.end, time), lane.state.medium),
+            Scatterer::Medium(encounter) => {
+                let Collision { t, density, .. } = encounter.collision;
+                let along = density_along(scene, &encounter.segment, t, found.chosen.light, time);
+                found.value *= power_heuristic(density * found.chosen.pmf, along);
+                let ray = ray_through_space(encounter.p(), wi, found.sample.end, time);
+                (ray, lane.state.medium)
+            }
         };
         if !ray.is_valid() {
             stage.slot(lane).broken = true;
@@ -245,10 +304,11 @@ impl VolumePath {
                 next.state.medium = stage.scene.medium_beyond(si, sample.wi, lane.state.medium);
                 si.spawn_ray(sample.wi)
             }
-            Scatterer::Medium { p, wo, phase } => {
+            Scatterer::Medium(encounter) => {
                 // The value is the density: the weight is 1.
-                let (wi, pdf) = phase.sample(wo, numbers.bsdf);
-                next.state.origin = Origin::Sampled { p, n: Vec3::ZERO, pdf };
+                let (wi, pdf) = encounter.phase.sample(encounter.wo(), numbers.bsdf);
+                let (p, n) = (encounter.p(), Vec3::ZERO);
+                next.state.origin = Origin::Sampled { p, n, pdf };
                 Ray::new(p, wi, event.time)
             }
         };

@@ -117,3 +117,38 @@ fn spectra() {
     ];
     cases.iter().for_each(check);
 }
+
+#[test]
+fn materials_of_materials() {
+    let cases: [Case; 6] = [
+        (
+            "WorldBegin MakeNamedMaterial \"g\" \"string type\" \"dielectric\"\nMaterial @\"sided\" \"string back\" \"g\"",
+            "cannot contain one that transmits",
+            "",
+        ),
+        (
+            "WorldBegin MakeNamedMaterial \"g\" \"string type\" \"thindielectric\"
+             MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [ \"g\" \"g\" ]
+             Material @\"sided\" \"string front\" \"m\"",
+            "cannot contain one that transmits",
+            "",
+        ),
+        (
+            "WorldBegin MakeNamedMaterial \"d\" \"string type\" \"diffuse\" Material @\"tinted\" \"string material\" \"d\"",
+            "can be `tinted`",
+            "",
+        ),
+        ("WorldBegin Material @\"tinted\"", "names the one that it tints", ""),
+        (
+            "WorldBegin MakeNamedMaterial \"a\" \"string type\" @\"sided\" \"string front\" \"a\"",
+            "contains itself",
+            "",
+        ),
+        (
+            "WorldBegin Material \"sided\" \"string front\" @\"nobody\"",
+            "no named material `nobody`",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}

@@ -194,3 +194,16 @@ fn attributes_that_are_not_there_are_named() {
         assert!(error.contains(message), "{error}");
     }
 }
+
+/// Found by fuzzing: the sum of such a place and the length of a header overflowed.
+#[test]
+fn a_serialized_mesh_at_the_end_of_all_numbers_is_refused() {
+    let mut content = two_serialized();
+    let at = content.len() - 20;
+    content[at..at + 8].fill(0xff);
+    content[at + 8..at + 16].fill(0xff);
+    for index in 0..2 {
+        let problem = serialized::parse(&content, index).expect_err("a mesh");
+        assert!(problem.contains("index of the file is damaged"), "{problem}");
+    }
+}

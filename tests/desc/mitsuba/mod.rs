@@ -3,7 +3,6 @@
 mod bad_input;
 mod files;
 mod media;
-mod mutations;
 mod plugins;
 
 use std::path::Path;
@@ -24,7 +23,7 @@ fn read(text: &str, options: &ParseOptions) -> Result<SceneDesc, Vec<Diagnostic>
 }
 
 /// A whole file around what is in the scene.
-fn file(content: &str) -> String {
+pub(super) fn file(content: &str) -> String {
     format!("<scene version=\"3.0.0\">{SENSOR}\n{content}</scene>")
 }
 

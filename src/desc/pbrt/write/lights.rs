@@ -1,6 +1,6 @@
 //! Lights.
 
-use super::{Writer, unwritable};
+use super::Writer;
 use glam::DVec3;
 
 use super::entity::Entity;
@@ -41,8 +41,9 @@ impl Writer<'_> {
                 delta,
                 falloff,
             } => {
-                if *falloff != SpotFalloff::Smooth {
-                    return Err(unwritable("the falloff of Mitsuba's spots"));
+                if *falloff == SpotFalloff::Linear {
+                    e.string("falloff", "linear");
+                    self.note("LightSource \"spot\" \"string falloff\"");
                 }
                 e.point("point3", "from", *from)
                     .point("point3", "to", *to)

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
+use super::Writer;
 use super::entity::Entity;
-use super::{Writer, unwritable};
 use crate::desc::{
-    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PrincipledDesc,
-    ReliefDesc, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, Textured,
+    CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
+    PrincipledDesc, ReliefDesc, RoughnessDesc, SceneDesc, SpectrumDesc, SpectrumValue, Textured,
 };
 use crate::error::Result;
 
@@ -76,12 +76,11 @@ impl Writer<'_> {
             MaterialKind::Hair(_) => "hair",
             MaterialKind::Interface => "interface",
             MaterialKind::Mix { .. } => "mix",
-            MaterialKind::Principled(desc) if desc.as_in_mitsuba => return Err(unwritable("Mitsuba's `principled`")),
             MaterialKind::Principled(_) => "principled",
             MaterialKind::Measured(_) => "measured",
-            MaterialKind::Sided { .. } => return Err(unwritable("a material that is black from one side")),
-            MaterialKind::Tinted { .. } => return Err(unwritable("the specular reflectance of a material")),
-            MaterialKind::Plastic(_) => return Err(unwritable("Mitsuba's `plastic`")),
+            MaterialKind::Sided { .. } => "sided",
+            MaterialKind::Tinted { .. } => "tinted",
+            MaterialKind::Plastic(_) => "plastic",
         };
         e.string("type", name);
         let names = &self.texture_names.clone();
@@ -108,7 +107,6 @@ impl Writer<'_> {
                 multiple_scattering,
             } => {
                 put_metal(e, interface, ["eta", "k"], names);
-                check_masking(roughness)?;
                 self.roughness(e, roughness, "", true);
                 self.multiple_scattering(e, *multiple_scattering);
             }
@@ -118,7 +116,6 @@ impl Writer<'_> {
                 multiple_scattering,
             } => {
                 put_index(e, "eta", eta);
-                check_masking(roughness)?;
                 self.roughness(e, roughness, "", true);
                 self.multiple_scattering(e, *multiple_scattering);
             }
@@ -151,8 +148,29 @@ impl Writer<'_> {
                 put_principled(e, principled, names);
                 self.note("Material \"principled\"");
             }
-            // Refused above.
-            MaterialKind::Sided { .. } | MaterialKind::Tinted { .. } | MaterialKind::Plastic(_) => {}
+            MaterialKind::Sided { front, back } => {
+                for (name, side) in [("front", front), ("back", back)] {
+                    if let Some(id) = side {
+                        e.string(name, &self.material_names[id.0 as usize]);
+                    }
+                }
+                self.note("Material \"sided\"");
+            }
+            MaterialKind::Tinted {
+                material,
+                reflectance,
+                transmittance,
+            } => {
+                e.string("material", &self.material_names[material.0 as usize])
+                    .spectrum_textured("reflectance", reflectance, names)
+                    .spectrum_textured("transmittance", transmittance, names);
+                self.note("Material \"tinted\"");
+            }
+            MaterialKind::Plastic(plastic) => {
+                put_plastic(e, plastic, names);
+                self.roughness(e, &plastic.roughness, "", true);
+                self.note("Material \"plastic\"");
+            }
             MaterialKind::Measured(measured) => {
                 let file = self.parts.file(&measured.path)?;
                 e.string("filename", &file);
@@ -178,17 +196,12 @@ impl Writer<'_> {
                 e.string("distribution", "beckmann");
                 self.note("Material \"string distribution\"");
             }
+            if roughness.separable_masking {
+                e.string("masking", "separable");
+                self.note("Material \"string masking\"");
+            }
         }
     }
-}
-
-/// Complains about facets that pbrt-v4 has not.
-fn check_masking(roughness: &RoughnessDesc) -> Result<()> {
-    let smooth = Textured::Value(0.0);
-    if roughness.separable_masking && (roughness.u != smooth || roughness.v != smooth) {
-        return Err(unwritable("the masking of Mitsuba's rough surfaces"));
-    }
-    Ok(())
 }
 
 fn put_metal(e: &mut Entity, interface: &ConductorDesc, [eta_name, k_name]: [&str; 2], names: &[String]) {
@@ -233,6 +246,13 @@ fn put_hair(e: &mut Entity, hair: &HairDesc, names: &[String]) {
         .float_textured("alpha", &hair.alpha, names);
 }
 
+fn put_plastic(e: &mut Entity, plastic: &PlasticDesc, names: &[String]) {
+    e.spectrum_textured("reflectance", &plastic.diffuse_reflectance, names)
+        .spectrum_textured("specularreflectance", &plastic.specular_reflectance, names)
+        .single("eta", plastic.eta)
+        .boolean("nonlinear", plastic.nonlinear);
+}
+
 fn put_principled(e: &mut Entity, principled: &PrincipledDesc, names: &[String]) {
     e.spectrum_textured("base_color", &principled.base_color, names)
         .single("eta", principled.eta);
@@ -246,7 +266,11 @@ fn put_principled(e: &mut Entity, principled: &PrincipledDesc, names: &[String])
         ("sheen_tint", &principled.sheen_tint),
         ("clearcoat", &principled.clearcoat),
         ("clearcoat_gloss", &principled.clearcoat_gloss),
+        ("flatness", &principled.flatness),
     ] {
         e.float_textured(name, value, names);
+    }
+    if principled.as_in_mitsuba {
+        e.boolean("additive", true);
     }
 }

@@ -1,7 +1,7 @@
 //! Textures.
 
+use super::Writer;
 use super::entity::{Entity, transform};
-use super::{Writer, unwritable};
 use crate::desc::{
     ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, SceneDesc, SpectrumDesc, TextureDesc,
     TextureKind, Textured, WrapDesc,
@@ -73,12 +73,17 @@ impl Writer<'_> {
             TextureKind::Dots { .. } => "dots",
             TextureKind::Bilerp { .. } => "bilerp",
             TextureKind::Image(_) => "imagemap",
-            TextureKind::MeshAttribute { .. } => return Err(unwritable("a texture that is an attribute of a mesh")),
+            TextureKind::MeshAttribute { .. } => {
+                return Err(super::unwritable("a texture that is an attribute of a mesh"));
+            }
             TextureKind::Fbm(_) => "fbm",
             TextureKind::Wrinkled(_) => "wrinkled",
             TextureKind::Windy => "windy",
             TextureKind::Marble { .. } => "marble",
         };
+        if matches!(kind.mapping(), Some(MappingDesc::Affine { .. })) {
+            self.note("Texture \"string mapping\" \"affine\"");
+        }
         let mut entity = Entity::texture(&texture.name, class, name);
         let e = &mut entity;
         let names = &self.texture_names;
@@ -102,7 +107,7 @@ impl Writer<'_> {
             }
             TextureKind::Checkerboard2 { textures, mapping } => {
                 two(e, textures);
-                put_mapping(e, mapping)?;
+                put_mapping(e, mapping);
             }
             TextureKind::Checkerboard3 { textures } => {
                 two(e, textures);
@@ -115,13 +120,13 @@ impl Writer<'_> {
             } => {
                 V::textured(e, "inside", inside, names);
                 V::textured(e, "outside", outside, names);
-                put_mapping(e, mapping)?;
+                put_mapping(e, mapping);
             }
             TextureKind::Bilerp { corners, mapping } => {
                 for (name, corner) in ["v00", "v01", "v10", "v11"].into_iter().zip(corners) {
                     V::value(e, name, corner);
                 }
-                put_mapping(e, mapping)?;
+                put_mapping(e, mapping);
             }
             TextureKind::Image(map) => self.image_map(e, map)?,
             TextureKind::Fbm(octaves) | TextureKind::Wrinkled(octaves) => put_octaves(e, octaves),
@@ -150,8 +155,11 @@ impl Writer<'_> {
             WrapDesc::Repeat => "repeat",
             WrapDesc::Black => "black",
             WrapDesc::Clamp => "clamp",
-            WrapDesc::Mirror => return Err(unwritable("an image that is mirrored at its edges")),
             WrapDesc::OctahedralSphere => "octahedralsphere",
+            WrapDesc::Mirror => {
+                self.note("Texture \"string wrap\" \"mirror\"");
+                "mirror"
+            }
         };
         entity.string("wrap", wrap);
         match map.filter {
@@ -162,11 +170,12 @@ impl Writer<'_> {
                 entity.string("filter", "EWA").single("maxanisotropy", max_anisotropy)
             }
         };
-        put_mapping(entity, &map.mapping)
+        put_mapping(entity, &map.mapping);
+        Ok(())
     }
 }
 
-fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) -> Result<()> {
+fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) {
     match mapping {
         MappingDesc::Uv { scale, delta } => {
             entity
@@ -176,7 +185,15 @@ fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) -> Result<()> {
                 .single("udelta", delta.x)
                 .single("vdelta", delta.y);
         }
-        MappingDesc::Affine { .. } => return Err(unwritable("texture coordinates that are turned or sheared")),
+        MappingDesc::Affine { matrix, delta } => {
+            let row = |i: usize| matrix.row(i).extend(0.0).to_array().into_iter();
+            entity
+                .string("mapping", "affine")
+                .singles("vector3", "v1", row(0))
+                .singles("vector3", "v2", row(1))
+                .single("udelta", delta.x)
+                .single("vdelta", delta.y);
+        }
         MappingDesc::Spherical => {
             entity.string("mapping", "spherical");
         }
@@ -192,7 +209,6 @@ fn put_mapping(entity: &mut Entity, mapping: &MappingDesc) -> Result<()> {
                 .single("vdelta", delta.y);
         }
     }
-    Ok(())
 }
 
 fn put_octaves(entity: &mut Entity, octaves: &OctavesDesc) {

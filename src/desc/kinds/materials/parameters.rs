@@ -1,166 +1,6 @@
-//! Every kind of material and its parameters, for the reader and for `lucerna list materials`.
+//! What materials are told.
 
-use super::Entry;
-use super::parameter::{FloatRange, Parameter, ParameterDefault, ParameterKind};
-
-/// All kinds.
-pub static MATERIALS: [Entry; 12] = [
-    Entry::new(
-        "Material",
-        "diffuse",
-        "Diffuse reflection on both sides",
-        &[&REFLECTANCE, &DIFFUSE_ROUGHNESS, &DISPLACEMENT, &NORMAL_MAP],
-    ),
-    Entry::new(
-        "Material",
-        "diffusetransmission",
-        "Lambertian reflection and transmission",
-        &[
-            &REFLECTED,
-            &TRANSMITTED,
-            &TRANSMISSION_SCALE,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "conductor",
-        "A metal, on both sides; either by eta and k or by its reflectance",
-        &[
-            &ETA_METAL,
-            &K,
-            &METAL_REFLECTANCE,
-            &ROUGHNESS,
-            &U_ROUGHNESS,
-            &V_ROUGHNESS,
-            &REMAP_ROUGHNESS,
-            &DISTRIBUTION,
-            &MULTIPLE_SCATTERING,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "dielectric",
-        "The boundary of a transparent body",
-        &[
-            &ETA,
-            &ROUGHNESS,
-            &U_ROUGHNESS,
-            &V_ROUGHNESS,
-            &REMAP_ROUGHNESS,
-            &DISTRIBUTION,
-            &MULTIPLE_SCATTERING,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "thindielectric",
-        "A thin smooth sheet of a transparent medium, which light passes straight on",
-        &[&ETA, &DISPLACEMENT, &NORMAL_MAP],
-    ),
-    Entry::new(
-        "Material",
-        "coateddiffuse",
-        "A Lambertian surface under a dielectric coat, on both sides",
-        &[
-            &REFLECTANCE,
-            &ETA,
-            &ROUGHNESS,
-            &U_ROUGHNESS,
-            &V_ROUGHNESS,
-            &REMAP_ROUGHNESS,
-            &DISTRIBUTION,
-            &THICKNESS,
-            &ALBEDO,
-            &G,
-            &MAX_DEPTH,
-            &N_SAMPLES,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "coatedconductor",
-        "A metal under a dielectric coat, on both sides",
-        &[
-            &CONDUCTOR_ETA,
-            &CONDUCTOR_K,
-            &METAL_REFLECTANCE,
-            &CONDUCTOR_ROUGHNESS,
-            &CONDUCTOR_U_ROUGHNESS,
-            &CONDUCTOR_V_ROUGHNESS,
-            &INTERFACE_ETA,
-            &INTERFACE_ROUGHNESS,
-            &INTERFACE_U_ROUGHNESS,
-            &INTERFACE_V_ROUGHNESS,
-            &REMAP_ROUGHNESS,
-            &DISTRIBUTION,
-            &THICKNESS,
-            &ALBEDO,
-            &G,
-            &MAX_DEPTH,
-            &N_SAMPLES,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "mix",
-        "At each point one of two named materials, chosen by a hash of the position",
-        &[&MIX_MATERIALS, &MIX_AMOUNT],
-    ),
-    Entry::new(
-        "Material",
-        "principled",
-        "Metal, plastic, glass, cloth and lacquer by the parameters of Mitsuba's principled (an extension)",
-        &[
-            &BASE_COLOR,
-            &PRINCIPLED_ROUGHNESS,
-            &ANISOTROPIC,
-            &METALLIC,
-            &SPEC_TRANS,
-            &PRINCIPLED_ETA,
-            &SPECULAR,
-            &SPEC_TINT,
-            &SHEEN,
-            &SHEEN_TINT,
-            &CLEARCOAT,
-            &CLEARCOAT_GLOSS,
-            &DISPLACEMENT,
-            &NORMAL_MAP,
-        ],
-    ),
-    Entry::new(
-        "Material",
-        "measured",
-        "Reflection as measured, on both sides, from a file of RGL's database",
-        &[&MEASURED_FILE, &DISPLACEMENT, &NORMAL_MAP],
-    ),
-    Entry::new(
-        "Material",
-        "hair",
-        "A fibre along the first texture coordinate, across which the second one runs: for curves",
-        &[
-            &SIGMA_A,
-            &HAIR_REFLECTANCE,
-            &HAIR_COLOR,
-            &EUMELANIN,
-            &PHEOMELANIN,
-            &HAIR_ETA,
-            &BETA_M,
-            &BETA_N,
-            &HAIR_ALPHA,
-        ],
-    ),
-    Entry::new("Material", "interface", "No surface", &[]),
-];
+use crate::desc::kinds::parameter::{FloatRange, Parameter, ParameterDefault, ParameterKind};
 
 const fn reflectance(default: f64) -> ParameterKind {
     ParameterKind::Reflectance { default: Some(default) }
@@ -222,6 +62,11 @@ pub static DISTRIBUTION: Parameter = Parameter::choice(
     "distribution",
     &["ggx", "beckmann"],
     "Distribution of the slopes of facets (an extension)",
+);
+pub static MASKING: Parameter = Parameter::choice(
+    "masking",
+    &["correlated", "separable"],
+    "Whether facets are masked and shadowed by their heights, as in pbrt, or independently, as in Mitsuba (an extension)",
 );
 pub static MULTIPLE_SCATTERING: Parameter = Parameter::flag(
     "multiplescattering",
@@ -328,6 +173,46 @@ pub static SHEEN_TINT: Parameter =
 pub static CLEARCOAT: Parameter = Parameter::new("clearcoat", unit(0.0), "How much there is of a coat of lacquer");
 pub static CLEARCOAT_GLOSS: Parameter =
     Parameter::new("clearcoat_gloss", unit(0.0), "From a satin coat to a glossy one");
+pub static FLATNESS: Parameter = Parameter::new(
+    "flatness",
+    unit(0.0),
+    "From diffuse to what looks like light from under the surface; only with additive",
+);
+pub static ADDITIVE: Parameter = Parameter::flag(
+    "additive",
+    false,
+    "Whether lobes are added up as Mitsuba adds them, which may gain energy",
+);
+
+pub static SPECULAR_REFLECTANCE: Parameter = Parameter::new(
+    "specularreflectance",
+    reflectance(1.0),
+    "A factor of what the boundary reflects",
+);
+pub static PLASTIC_ETA: Parameter = Parameter::float(
+    "eta",
+    1.49,
+    FloatRange::Positive,
+    "Index of refraction of the base over that of the outside",
+);
+pub static NONLINEAR: Parameter = Parameter::flag(
+    "nonlinear",
+    false,
+    "Whether light that is reflected back inside takes on more of the base's colour each time",
+);
+
+pub static FRONT: Parameter = Parameter::new(
+    "front",
+    ParameterKind::Material,
+    "On the side of the normal; black by default",
+);
+pub static BACK: Parameter = Parameter::new("back", ParameterKind::Material, "On the other side; black by default");
+
+pub static TINTED: Parameter = Parameter::new("material", ParameterKind::Material, "Which; required");
+pub static TINT_REFLECTED: Parameter = Parameter::new("reflectance", reflectance(1.0), "A factor of what is reflected");
+pub static TINT_TRANSMITTED: Parameter =
+    Parameter::new("transmittance", reflectance(1.0), "A factor of what is transmitted");
+
 pub static DISPLACEMENT: Parameter = Parameter::new(
     "displacement",
     ParameterKind::FloatTextured { default: 0.0 },

@@ -1,0 +1,4 @@
+//! Images.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|input: &[u8]| lucerna_fuzz::image(input, b"#?", "x.hdr"));

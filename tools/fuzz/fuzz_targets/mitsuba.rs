@@ -1,0 +1,4 @@
+//! Scenes of Mitsuba.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|input: &[u8]| lucerna_fuzz::mitsuba(input));

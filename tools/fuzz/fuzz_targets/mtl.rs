@@ -1,0 +1,4 @@
+//! Libraries of materials of meshes in OBJ.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|input: &[u8]| lucerna_fuzz::mtl(input));
