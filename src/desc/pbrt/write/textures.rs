@@ -73,7 +73,9 @@ impl Writer<'_> {
             TextureKind::Dots { .. } => "dots",
             TextureKind::Bilerp { .. } => "bilerp",
             TextureKind::Image(_) => "imagemap",
-            TextureKind::MeshAttribute { .. } => return Err(unwritable("a texture that is an attribute of a mesh")),
+            TextureKind::MeshAttribute { .. } => {
+                return Err(unwritable("a texture that is an attribute of a mesh"));
+            }
             TextureKind::Fbm(_) => "fbm",
             TextureKind::Wrinkled(_) => "wrinkled",
             TextureKind::Windy => "windy",
