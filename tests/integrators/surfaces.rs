@@ -96,7 +96,9 @@ pub static SURFACES: [Surface; 27] = [
     ),
     textured(
         "bumps",
-        r#"Texture "dents" "float" "wrinkled" Texture "heights" "float" "scale" "texture tex" "dents" "float scale" 0.1"#,
+        // Of one octave: finer ones are smoothed over the footprint of a camera path, and less on light paths.
+        r#"Texture "dents" "float" "wrinkled" "integer octaves" 1
+           Texture "heights" "float" "scale" "texture tex" "dents" "float scale" 0.1"#,
         r#"Material "conductor" "float roughness" 0.3 "texture displacement" "heights""#,
     ),
     plain(
