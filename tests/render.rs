@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use common::means::{Estimate, FEWEST_RUNS, Means};
 use common::render::{Built, MODES, blocks, combinations, parse};
 use lucerna::accel::Backend;
-use lucerna::desc::{IntegratorKind, ParseOptions, load};
+use lucerna::desc::{IntegratorKind, ParseOptions, SceneDesc, load};
 use lucerna::film::PixelRect;
 use lucerna::integrator::{Integrator, Silent};
 use lucerna::sampling::SamplerKind;
@@ -379,6 +379,75 @@ fn light_samplers_give_the_same_picture() {
     }
 }
 
+/// A scene of Mitsuba's with round curves of both kinds, and a mesh with attributes of vertices and triangles.
+fn curves_and_attributes(folder: &Path) -> SceneDesc {
+    let side = 16;
+    let mut ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar r\n\
+         property uchar g\nproperty uchar b\nproperty float heat_0\nelement face {}\nproperty list uchar int vertex_indices\n\
+         property float glow_x\nproperty float glow_y\nproperty float glow_z\nend_header\n",
+        side * side,
+        2 * (side - 1) * (side - 1)
+    );
+    for i in 0..side * side {
+        let (x, y) = (i % side, i / side);
+        let [u, v] = [x, y].map(|k| f64::from(k) / 4.0 - 2.0);
+        ply += &format!(
+            "{u} {v} {} {} {} 99 {}\n",
+            (u * v).sin() / 3.0,
+            16 * x,
+            16 * y,
+            f64::from(i % 7) / 6.0
+        );
+    }
+    for i in 0..(side - 1) * (side - 1) {
+        let a = i % (side - 1) + i / (side - 1) * side;
+        let (b, c, d) = (a + 1, a + side, a + side + 1);
+        ply += &format!("3 {a} {b} {d} .{} .2 .9\n3 {a} {d} {c} .7 .{} .1\n", i % 9, i % 5);
+    }
+    let spline = "-2 -1 2 .3\n-1 1 2 .2\n0 -1 2 .3\n1 1 2 .1\n2 -1 2 .2\n\n-2 2 1 .1\n0 1 1 .2\n1 2 1 .1\n2 0 1 .1\n";
+    let texture = |slot: &str, name: &str| {
+        format!(
+            r#"<texture type="mesh_attribute" name="{slot}"><string name="name" value="{name}"/><float name="scale" value=".9"/></texture>"#
+        )
+    };
+    let shape = |kind: &str, file: &str, bsdf: &str| {
+        format!(r#"<shape type="{kind}"><string name="filename" value="{file}"/>{bsdf}</shape>"#)
+    };
+    let diffuse = |name: &str| format!(r#"<bsdf type="diffuse">{}</bsdf>"#, texture("reflectance", name));
+    let xml = format!(
+        r#"<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="50"/><transform name="to_world">
+        <lookat origin="0,0,7" target="0,0,0" up="0,1,0"/></transform></sensor><emitter type="constant"/>{}{}{}{}</scene>"#,
+        shape(
+            "ply",
+            "mesh.ply",
+            &format!(
+                r#"<bsdf type="mask">{}{}</bsdf>"#,
+                texture("opacity", "vertex_heat"),
+                diffuse("vertex_color")
+            )
+        ),
+        shape(
+            "ply",
+            "mesh.ply",
+            &format!(
+                r#"<transform name="to_world"><translate z="-1"/></transform>{}"#,
+                diffuse("face_glow")
+            )
+        ),
+        shape("bsplinecurve", "spline.txt", r#"<bsdf type="plastic"/>"#),
+        shape(
+            "linearcurve",
+            "spline.txt",
+            r#"<transform name="to_world"><translate y="1"/></transform>"#
+        ),
+    );
+    for (name, content) in [("mesh.ply", ply.as_str()), ("spline.txt", spline), ("scene.xml", &xml)] {
+        std::fs::write(folder.join(name), content).expect("a file");
+    }
+    load(&folder.join("scene.xml"), &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// A scene that is written to a file and read again gives the same picture, bit by bit.
 #[test]
 fn a_written_scene_gives_the_same_bits() {
@@ -390,7 +459,8 @@ fn a_written_scene_gives_the_same_bits() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/seeds/mitsuba/materials.xml");
         load(&path, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"))
     };
-    for desc in [parse(&everything), parse(&fog), mitsuba] {
+    let curves = curves_and_attributes(folder.path());
+    for desc in [parse(&everything), parse(&fog), mitsuba, curves] {
         lucerna::desc::pbrt::write(&desc, &file).unwrap_or_else(|e| panic!("{e}"));
         let again = load(&file, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}"));
         let overrides = ViewOverrides {
@@ -398,10 +468,10 @@ fn a_written_scene_gives_the_same_bits() {
             spp: Some(2),
             ..ViewOverrides::default()
         };
-        let [picture, other] = [desc, again].map(|desc| {
-            let built = Built::new(desc, Backend::Bvh, ColorMode::Spectral);
-            built.picture(&built.view(0, &overrides))
-        });
+        let built = Built::new(desc, Backend::Bvh, ColorMode::Spectral);
+        // As the program builds it.
+        let taken = Built::taking_shapes(again, Backend::Bvh, ColorMode::Spectral);
+        let [picture, other] = [built, taken].map(|built| built.picture(&built.view(0, &overrides)));
         assert!(picture.iter().any(|&v| v > 0.0) && picture == other);
     }
 }

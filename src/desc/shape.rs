@@ -215,7 +215,7 @@ pub struct MeshDesc {
 /// Values that a mesh has at its vertices or on its triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshAttributeDesc {
-    /// What textures call it.
+    /// What textures call it: it begins with the [`AttributeDomain::prefix`] of its domain.
     pub name: String,
     /// What it has values for.
     pub domain: AttributeDomain,
@@ -232,4 +232,14 @@ pub enum AttributeDomain {
     Vertices,
     /// Each triangle.
     Triangles,
+}
+
+impl AttributeDomain {
+    /// What the names of such attributes begin with, as in Mitsuba.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Self::Vertices => "vertex_",
+            Self::Triangles => "face_",
+        }
+    }
 }

@@ -3,15 +3,30 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::desc::{AttributeDomain, MeshAttributeDesc, MeshDesc, SceneDesc, ShapeDesc, ShapeKind};
+use crate::desc::{
+    AttributeDomain, ClassedTexture, MeshAttributeDesc, MeshDesc, SceneDesc, ShapeDesc, ShapeKind, TextureKind,
+};
 use crate::texture::AttributeTable;
 
 /// The tables of an attribute by geometry.
 pub(super) type AttributeTables = Arc<[Option<Arc<AttributeTable>>]>;
 
+/// The tables of all attributes that textures ask for, by name. They are made while the description still has its meshes.
+pub(super) fn asked_for(desc: &SceneDesc) -> HashMap<String, AttributeTables> {
+    let mut asked = HashMap::new();
+    for texture in &desc.textures {
+        if let ClassedTexture::Float(TextureKind::MeshAttribute { name, .. })
+        | ClassedTexture::Spectrum(TextureKind::MeshAttribute { name, .. }) = &texture.kind
+        {
+            asked.entry(name.clone()).or_insert_with(|| tables(desc, name));
+        }
+    }
+    asked
+}
+
 /// What each geometry has of the attribute of a name. Geometries are numbered as they are added: the shapes of the world, then those
 /// of the objects.
-pub(super) fn tables(desc: &SceneDesc, name: &str) -> AttributeTables {
+fn tables(desc: &SceneDesc, name: &str) -> AttributeTables {
     let shapes = desc
         .shapes
         .iter()

@@ -1,9 +1,11 @@
 //! From a description to a scene.
 
 use std::borrow::Borrow;
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::attributes::{self, AttributeTables};
 use super::lights::LightBuilder;
 use super::materials::compile_materials;
 use super::media;
@@ -36,7 +38,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for what the description asks and cannot be had, [`Error::Backend`] if the backend fails.
     pub fn build(desc: &SceneDesc, options: &SceneOptions) -> Result<Self> {
-        Self::of_shapes(desc, desc.shapes.iter(), options)
+        Self::of_shapes(desc, desc.shapes.iter(), attributes::asked_for(desc), options)
     }
 
     /// As [`Scene::build`], but takes the shapes that stand in the world themselves out of the description, and forgets each once it has its
@@ -45,19 +47,21 @@ impl Scene {
     /// # Errors
     /// As for [`Scene::build`].
     pub fn build_taking_shapes(desc: &mut SceneDesc, options: &SceneOptions) -> Result<Self> {
+        let attributes = attributes::asked_for(desc);
         let shapes = std::mem::take(&mut desc.shapes);
-        Self::of_shapes(desc, shapes.into_iter(), options)
+        Self::of_shapes(desc, shapes.into_iter(), attributes, options)
     }
 
     fn of_shapes(
         desc: &SceneDesc,
         shapes: impl Iterator<Item = impl Borrow<ShapeDesc>>,
+        attributes: HashMap<String, AttributeTables>,
         options: &SceneOptions,
     ) -> Result<Self> {
         let spectra = SpectrumCompiler { mode: options.color };
         let mut builder = SceneBuilder {
             desc,
-            textures: TextureCompiler::new(desc, spectra),
+            textures: TextureCompiler::new(desc, attributes, spectra),
             world: WorldBuilder::default(),
             surfaces: Vec::new(),
             lights: LightBuilder::new(options.color),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::attributes::{self, AttributeTables};
+use super::attributes::AttributeTables;
 use super::spectra::SpectrumCompiler;
 use crate::desc::{
     ClassedTexture, DistributionDesc, ImageDesc, ImageFilterDesc, ImageId, ImageMapDesc, MappingDesc, ReliefDesc,
@@ -40,7 +40,6 @@ impl SpectrumUse {
 
 /// Makes textures ready for rendering, each once for each use.
 pub(super) struct TextureCompiler<'a> {
-    desc: &'a SceneDesc,
     textures: &'a [TextureDesc],
     images: &'a [ImageDesc],
     pub spectra: SpectrumCompiler,
@@ -51,16 +50,16 @@ pub(super) struct TextureCompiler<'a> {
 }
 
 impl<'a> TextureCompiler<'a> {
-    pub fn new(desc: &'a SceneDesc, spectra: SpectrumCompiler) -> Self {
+    /// For the textures of a description, the tables of the attributes that they ask for made already.
+    pub fn new(desc: &'a SceneDesc, attributes: HashMap<String, AttributeTables>, spectra: SpectrumCompiler) -> Self {
         Self {
-            desc,
             textures: &desc.textures,
             images: &desc.images,
             spectra,
             floats: HashMap::new(),
             of_spectra: HashMap::new(),
             maps: HashMap::new(),
-            attributes: HashMap::new(),
+            attributes,
         }
     }
 
@@ -275,11 +274,8 @@ impl<'a> TextureCompiler<'a> {
         }
     }
 
-    /// An attribute of meshes, its tables made once.
-    fn attribute(&mut self, name: &str, scale: f32) -> AttributeTexture {
-        let desc = self.desc;
-        let tables = self.attributes.entry(name.to_owned());
-        let tables = tables.or_insert_with(|| attributes::tables(desc, name)).clone();
+    fn attribute(&self, name: &str, scale: f32) -> AttributeTexture {
+        let tables = self.attributes.get(name).cloned().unwrap_or_default();
         AttributeTexture { tables, scale }
     }
 

@@ -43,14 +43,23 @@ pub fn parse(text: &str) -> SceneDesc {
     pbrt::parse_str(text.as_bytes(), &path, &ParseOptions::default()).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
+fn options(backend: Backend, color: ColorMode) -> SceneOptions {
+    SceneOptions {
+        backend,
+        color,
+        ..SceneOptions::default()
+    }
+}
+
 impl Built {
     pub fn new(desc: SceneDesc, backend: Backend, color: ColorMode) -> Self {
-        let options = SceneOptions {
-            backend,
-            color,
-            ..SceneOptions::default()
-        };
-        let scene = Scene::build(&desc, &options).expect("the scene can be built");
+        let scene = Scene::build(&desc, &options(backend, color)).expect("the scene can be built");
+        Self { desc, scene }
+    }
+
+    /// The same, without the shapes in the description.
+    pub fn taking_shapes(mut desc: SceneDesc, backend: Backend, color: ColorMode) -> Self {
+        let scene = Scene::build_taking_shapes(&mut desc, &options(backend, color)).expect("the scene can be built");
         Self { desc, scene }
     }
 

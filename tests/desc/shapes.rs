@@ -1,7 +1,7 @@
 //! Shapes with the parameters of pbrt, and its defaults.
 
 use glam::{Vec2, Vec3};
-use lucerna::desc::{CurveKindDesc, QuadricDesc, ShapeKind, Textured};
+use lucerna::desc::{CurveKindDesc, QuadricDesc, ShapeKind, Textured, TubeBasis};
 
 use super::{errors, world};
 
@@ -156,6 +156,31 @@ fn curves_of_every_basis_are_cubic_segments() {
         [v(1.5, 0.0, 0.0), v(2.5, 0.0, 0.0), v(3.0, 0.5, 0.0), v(3.0, 1.5, 0.0)]
     );
     assert_eq!(curve(3).normals, [Vec3::Z, Vec3::Y, Vec3::X]);
+}
+
+#[test]
+fn tubes_have_a_radius_at_each_point() {
+    let kinds = kinds(
+        "Shape \"tubes\" \"point3 P\" [0 0 0  1 0 0  1 1 0]
+         Shape \"tubes\" \"point3 P\" [0 0 0  1 0 0  1 1 0  2 2 2] \"float radius\" .5 \"integer counts\" [2 2]
+         Shape \"tubes\" \"string basis\" \"bspline\" \"point3 P\" [0 0 0  1 0 0  1 1 0  2 2 2] \"float radius\" [.1 .2 0 .4]",
+    );
+    let tubes = |i: usize| match &kinds[i] {
+        ShapeKind::Tubes(tubes) => tubes,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(
+        (tubes(0).basis, &tubes(0).radii[..], &tubes(0).counts[..]),
+        (TubeBasis::Linear, &[1.0; 3][..], &[3][..])
+    );
+    assert_eq!(
+        (&tubes(1).radii[..], &tubes(1).counts[..]),
+        (&[0.5; 4][..], &[2, 2][..])
+    );
+    assert_eq!(
+        (tubes(2).basis, &tubes(2).radii[..], &tubes(2).counts[..]),
+        (TubeBasis::CubicBSpline, &[0.1, 0.2, 0.0, 0.4][..], &[4][..])
+    );
 }
 
 #[test]

@@ -27,6 +27,9 @@ const TYPES: [(&str, &str); 13] = [
     ("blackbody", "4000"),
 ];
 
+/// With an attribute.
+const MESH: &str = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float vertex_heat\" [1 2 3]";
+
 /// An entry as it is used: a texture of a class, anything else of none.
 #[derive(Clone, Copy)]
 struct Case {
@@ -56,6 +59,7 @@ impl Case {
         let Entry { directive, name, .. } = *self.entry;
         let needed = match name {
             "mix" if directive == "Material" => "\"string materials\" [\"a\" \"a\"]".to_owned(),
+            "meshattribute" => "\"string name\" \"vertex_heat\"".to_owned(),
             "tinted" => "\"string material\" \"gold\"".to_owned(),
             "measured" | "imagemap" | "goniometric" | "projection" => {
                 format!("\"string filename\" {}", self.file("filename"))
@@ -80,6 +84,7 @@ impl Case {
             MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"gold\" \"string type\" \"conductor\"";
         match directive {
             "Sampler" | "Integrator" => format!("{used} WorldBegin"),
+            "Texture" => format!("{world}\n{used} {MESH}"),
             _ => format!("{world}\n{used} Shape \"sphere\""),
         }
     }
@@ -114,6 +119,7 @@ impl Case {
             (ParameterKind::Encoding { default }, _) => format!("\"{default}\""),
             (ParameterKind::File, _) => self.file(parameter.name).to_owned(),
             (ParameterKind::Material, _) => "\"gold\"".to_owned(),
+            (ParameterKind::Attribute, _) => "\"vertex_heat\"".to_owned(),
             (ParameterKind::TwoMaterials, _) => "[\"a\" \"a\"]".to_owned(),
             (ParameterKind::Points(4), _) => "[0 0 0  0 1 0  1 1 0  1 0 0]".to_owned(),
             _ => value.to_owned(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lucerna::desc::{ParseOptions, SceneDesc, load, pbrt};
+use lucerna::desc::{ParseOptions, SceneDesc, ShapeKind, load, pbrt};
 use tempfile::TempDir;
 
 use super::STRICT;
@@ -88,11 +88,44 @@ fn rarer_things_are_the_same_again() {
         "WorldBegin Material \"hair\" \"rgb sigma_a\" [3 2 1] \"float beta_n\" .4 Shape \"sphere\"",
         "WorldBegin Material \"hair\" \"float pheomelanin\" .4 Shape \"sphere\"",
         "WorldBegin Material \"hair\" \"rgb color\" [.3 .2 .1] \"float alpha\" 3 \"float eta\" 1.4 Shape \"sphere\"",
+        include_str!("../seeds/pbrt/attributes.pbrt"),
         "Camera \"perspective\" \"float shutterclose\" .5 Film \"image\" \"float scale\" 3 WorldBegin Material \"plastic\"
             Shape \"sphere\" LightSource \"infinite\" \"blackbody L\" [4000 2]",
     ] {
         check(text, &crate::scene(text));
     }
+}
+
+/// What is too long for the scene itself stands in a PLY file, attributes too.
+#[test]
+fn attributes_of_large_meshes_are_the_same_again() {
+    let triangles = 300;
+    let list =
+        |count: usize, factor: f64| -> String { (0..count).map(|i| format!("{} ", i as f64 * factor)).collect() };
+    let indices: String = (0..triangles).map(|i| format!("{i} {} {} ", i + 1, i + 2)).collect();
+    let vertices = triangles + 2;
+    let points: String = (0..vertices).map(|i| format!("{i} {} {} ", i % 2, i % 3)).collect();
+    let text = format!(
+        "WorldBegin Texture \"a\" \"spectrum\" \"meshattribute\" \"string name\" \"vertex_color\"
+        Texture \"b\" \"float\" \"meshattribute\" \"string name\" \"face_texture_u\" \"float scale\" -.3
+        Material \"diffuse\" \"texture reflectance\" \"a\" \"texture roughness\" \"b\"
+        Shape \"trianglemesh\" \"point3 P\" [{points}] \"integer indices\" [{indices}]
+        \"rgb vertex_color\" [{}] \"float vertex_heat_r\" [{}] \"float face_texture_u\" [{}] \"rgb face_u\" [{}]",
+        list(3 * vertices, 0.001),
+        list(vertices, -0.7),
+        list(triangles, 1e-30),
+        list(3 * triangles, 3e7),
+    );
+    let desc = crate::scene(&text);
+    let ShapeKind::TriangleMesh(mesh) = &desc.shapes[0].kind else {
+        panic!("a mesh")
+    };
+    assert_eq!(mesh.attributes.len(), 4);
+    let folder = TempDir::new().expect("a folder");
+    let notes = pbrt::write(&desc, &folder.path().join("a.pbrt")).unwrap_or_else(|e| panic!("{e}"));
+    assert!(folder.path().join("a-parts/mesh-1.ply").exists());
+    assert!(notes.iter().any(|note| note.contains("meshattribute")), "{notes:?}");
+    check("attributes", &desc);
 }
 
 /// Mitsuba's scenes, with all that pbrt-v4 has no word for.

@@ -158,6 +158,8 @@ pub enum ParameterKind {
     },
     /// `string`: the name of a named material; there is no default.
     Material,
+    /// `string`: the name of an attribute of meshes; there is no default.
+    Attribute,
     /// `string`: the names of two named materials; there is no default.
     TwoMaterials,
     /// A parameter of pbrt's, of this type, that has no effect; not more than its presence is looked at.
@@ -239,9 +241,12 @@ impl ParameterKind {
             Self::Vector(_) => &["vector3"],
             Self::Point(_) | Self::Points(_) => &["point3"],
             Self::Emission | Self::Spectrum { .. } => &["rgb", "spectrum", "blackbody"],
-            Self::Choice { .. } | Self::Encoding { .. } | Self::File | Self::Material | Self::TwoMaterials => {
-                &["string"]
-            }
+            Self::Choice { .. }
+            | Self::Encoding { .. }
+            | Self::File
+            | Self::Material
+            | Self::Attribute
+            | Self::TwoMaterials => &["string"],
             Self::Value { .. } => &["float", "rgb", "spectrum", "blackbody"],
             Self::Textured { .. } => &["float", "rgb", "spectrum", "blackbody", "texture"],
             Self::FloatTextured { .. } | Self::FloatTexturedIn { .. } | Self::Pigment => &["float", "texture"],
@@ -265,7 +270,7 @@ impl ParameterKind {
             Self::MetalIndex { .. } | Self::MetalAbsorption { .. } | Self::Absorption | Self::Pigment => {
                 FloatRange::NotNegative.text().to_owned()
             }
-            Self::Material => "a name".to_owned(),
+            Self::Material | Self::Attribute => "a name".to_owned(),
             Self::TwoMaterials => "two names".to_owned(),
             Self::Choice { choices, .. } => choices.join(", "),
             Self::Encoding { .. } => "sRGB, linear, \"gamma G\" with G more than 0".to_owned(),
@@ -302,6 +307,7 @@ impl ParameterKind {
             Self::Emission => "the colour space's illuminant".to_owned(),
             Self::File
             | Self::Material
+            | Self::Attribute
             | Self::TwoMaterials
             | Self::Points(_)
             | Self::Photometric

@@ -11,7 +11,7 @@ const FLOAT: &[TextureClass] = &[TextureClass::Float];
 const SPECTRUM: &[TextureClass] = &[TextureClass::Spectrum];
 
 /// All kinds.
-pub static TEXTURES: [Entry; 12] = [
+pub static TEXTURES: [Entry; 13] = [
     Entry::new("Texture", "constant", "The same value everywhere", &[&VALUE]).of_classes(BOTH),
     Entry::new("Texture", "scale", "A texture times a number", &[&TEX, &SCALE_BY]).of_classes(BOTH),
     Entry::new(
@@ -75,6 +75,13 @@ pub static TEXTURES: [Entry; 12] = [
         &[
             &INSIDE, &OUTSIDE, &MAPPING, &USCALE, &VSCALE, &UDELTA, &VDELTA, &V1, &V2,
         ],
+    )
+    .of_classes(BOTH),
+    Entry::new(
+        "Texture",
+        "meshattribute",
+        "What the mesh that it lies on has at its vertices or triangles under a name; 0 on shapes that have none (an extension)",
+        &[&NAME, &SCALE],
     )
     .of_classes(BOTH),
     Entry::new(
@@ -165,6 +172,11 @@ pub static V2: Parameter = Parameter::new(
     "planar: the second coordinate is the dot product with this; affine: its with (u, v, 0)",
 );
 pub static FILENAME: Parameter = Parameter::file("filename", "A PNG, JPEG, TGA, HDR, EXR or PFM file");
+pub static NAME: Parameter = Parameter::new(
+    "name",
+    ParameterKind::Attribute,
+    "Of the attribute: it begins with vertex_ or face_; required",
+);
 pub static FILTER: Parameter = Parameter::new(
     "filter",
     ParameterKind::Choice {
@@ -188,7 +200,7 @@ pub static SCALE: Parameter = Parameter::float(
     "scale",
     1.0,
     FloatRange::Any,
-    "A factor: of an image's values, of marble's coordinates",
+    "A factor: of an image's or an attribute's values, of marble's coordinates",
 );
 pub static INVERT: Parameter = Parameter::flag("invert", false, "Whether 1 - value is meant, after scaling");
 pub static ENCODING: Parameter = Parameter::new(

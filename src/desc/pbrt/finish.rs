@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::attributes;
 use super::builder::Builder;
 use super::files::Context;
 use super::nested;
@@ -46,13 +47,13 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
     let textures = std::mem::take(&mut context.textures).finish(&mut context.report);
     let images = std::mem::take(&mut context.images);
     let images = context.read_images(&images);
-    let meshes = read_meshes(&meshes, &mut context);
+    let meshes = read_meshes(&meshes, attributes::are_wanted(&textures), &mut context);
     if context.report.has_errors() {
         return Err(Error::Scene(context.report.into_errors()));
     }
     let mut shape_of = |shape: RawShape| resolve_shape(shape, &materials, &meshes, &mut context.report);
-    let shapes = shapes.into_iter().filter_map(&mut shape_of).collect();
-    let objects = objects
+    let shapes: Vec<_> = shapes.into_iter().filter_map(&mut shape_of).collect();
+    let objects: Vec<_> = objects
         .into_iter()
         .map(|object| ObjectDesc {
             name: object.name,
@@ -60,6 +61,10 @@ pub(super) fn finish(builder: Builder) -> Result<SceneDesc> {
             span: object.span,
         })
         .collect();
+    attributes::check(&textures, &shapes, &objects, &mut context.report);
+    if context.report.has_errors() {
+        return Err(Error::Scene(context.report.into_errors()));
+    }
     let hash = context.hash();
     let (sources, warnings) = context.report.into_sources_and_warnings();
     Ok(SceneDesc {
@@ -123,9 +128,14 @@ fn resolve_materials(slots: Vec<Slot>, report: &mut Report) -> Vec<MaterialDesc>
     materials
 }
 
-/// Reads the mesh files, in parallel. One that cannot be read is complained about and empty.
-fn read_meshes(pending: &PendingMeshes, context: &mut Context) -> Vec<Arc<MeshDesc>> {
-    let read: Vec<_> = pending.files.par_iter().map(|(path, _)| ply::load(path)).collect();
+/// Reads the mesh files, in parallel, with their attributes or without. One that cannot be read is complained about and empty.
+fn read_meshes(pending: &PendingMeshes, with_attributes: bool, context: &mut Context) -> Vec<Arc<MeshDesc>> {
+    let load = if with_attributes {
+        ply::load_with_attributes
+    } else {
+        ply::load
+    };
+    let read: Vec<_> = pending.files.par_iter().map(|(path, _)| load(path)).collect();
     let mut meshes = Vec::with_capacity(read.len());
     for ((path, span), outcome) in pending.files.iter().zip(read) {
         meshes.push(match outcome {

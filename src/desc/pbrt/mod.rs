@@ -6,6 +6,7 @@
 //!
 //! Beyond pbrt-v4, whatever is unknown, has the wrong type or is given twice is an error, many of them in one run.
 
+mod attributes;
 mod blocks;
 mod builder;
 mod camera;

@@ -60,6 +60,21 @@ impl<'a> ParamReader<'a> {
     /// its values are broken.
     pub fn take(&mut self, name: &'static str, kinds: &[ParamType]) -> Option<Param> {
         self.known.push(name);
+        self.take_named(name, kinds)
+    }
+
+    /// Takes the parameters whose names begin so, as [`ParamReader::take`] does, in the order of the file.
+    pub fn take_beginning(&mut self, beginning: &str, kinds: &[ParamType]) -> Vec<Param> {
+        let mut names: Vec<String> = Vec::new();
+        for param in self.params.iter().filter(|param| param.name.starts_with(beginning)) {
+            if !names.contains(&param.name) {
+                names.push(param.name.clone());
+            }
+        }
+        names.iter().filter_map(|name| self.take_named(name, kinds)).collect()
+    }
+
+    fn take_named(&mut self, name: &str, kinds: &[ParamType]) -> Option<Param> {
         let mut found: Option<Param> = None;
         for i in 0..self.params.len() {
             let param = &self.params[i];

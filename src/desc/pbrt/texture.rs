@@ -137,6 +137,7 @@ fn read_kind<V: Value>(reader: &mut ParamReader<'_>, entry: &Entry) -> Option<Te
         "fbm" => TextureKind::Fbm(octaves(reader)),
         "wrinkled" => TextureKind::Wrinkled(octaves(reader)),
         "windy" => TextureKind::Windy,
+        "meshattribute" => mesh_attribute(reader)?,
         "marble" => TextureKind::Marble {
             octaves: octaves(reader),
             scale: reader.float_by(&kinds::SCALE) as f32,
@@ -217,6 +218,20 @@ fn image_map(reader: &mut ParamReader<'_>) -> Option<ImageMapDesc> {
         scale,
         invert,
     })
+}
+
+/// `None`, having said so, without a name.
+fn mesh_attribute<V>(reader: &mut ParamReader<'_>) -> Option<TextureKind<V>> {
+    let scale = reader.float_by(&kinds::SCALE) as f32;
+    let Some((name, _)) = reader.string(kinds::NAME.name) else {
+        if !reader.has(kinds::NAME.name) {
+            let span = reader.span;
+            let message = "this `meshattribute` has no `\"string name\"`";
+            reader.report().error(span, message);
+        }
+        return None;
+    };
+    Some(TextureKind::MeshAttribute { name, scale })
 }
 
 fn direction(reader: &mut ParamReader<'_>) -> DVec3 {

@@ -236,3 +236,83 @@ fn curves() {
     ];
     cases.iter().for_each(check);
 }
+
+#[test]
+fn tubes() {
+    let cases: [Case; 8] = [
+        ("WorldBegin Shape @\"tubes\"", "no vertices", ""),
+        (
+            "WorldBegin Shape \"tubes\" \"string basis\" @\"bezier\" \"point3 P\" [0 0 0 1 1 1]",
+            "`basis` is `bezier`, expected linear, bspline",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" @\"point3 P\" [0 0 0]",
+            "`P` has 1 points, expected 2 or more",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" \"string basis\" \"bspline\" \"integer counts\" [4 @3] \"point3 P\" [0 0 0 1 1 1]",
+            "a curve of 3 points, expected 4 or more",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" \"integer counts\" [@-4] \"point3 P\" [0 0 0 1 1 1]",
+            "a curve of -4 points",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" \"integer counts\" @[2 2] \"point3 P\" [0 0 0 1 1 1 2 2 2]",
+            "`counts` are 4 points together, but `P` has 3",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" \"float radius\" @[1 2 3] \"point3 P\" [0 0 0 1 1 1]",
+            "`radius` is given for 3 vertices, but there are 2",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"tubes\" \"float radius\" @[1 -2] \"point3 P\" [0 0 0 1 1 1]",
+            "`radius` is -2, it must be 0 or more",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
+#[test]
+fn attributes_of_meshes() {
+    let cases: [Case; 6] = [
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"rgb vertex_color\" @[1 2 3]",
+            "has 3 numbers, expected 3 for each of 3 vertices",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float face_heat\" @[1 2]",
+            "has 2 numbers, expected 1 for each of 1 triangles",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float face_heat\" [@1e39]",
+            "does not fit into 32-bit",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] @\"float face_\" [1]",
+            "cannot be the name of an attribute",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] @\"vector3 vertex_color\" [1 2 3]",
+            "has the type `vector3`, expected `float` or `rgb`",
+            "",
+        ),
+        (
+            "WorldBegin ColorSpace \"rec2020\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] @\"rgb face_color\" [1 2 3]",
+            "colors of meshes are in srgb",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}

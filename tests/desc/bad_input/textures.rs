@@ -145,3 +145,32 @@ fn image_textures() {
         }
     }
 }
+
+#[test]
+fn attributes_of_meshes() {
+    let cases: [Case; 4] = [
+        (
+            "WorldBegin Texture \"a\" \"float\" @\"meshattribute\"",
+            "this `meshattribute` has no `\"string name\"`",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" @\"meshattribute\" \"string name\" \"vertex_color\"",
+            "no mesh has the attribute `vertex_color`: none has any",
+            "",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"spectrum\" @\"meshattribute\" \"string name\" \"vertex_colour\"
+            Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"float vertex_color\" [1 2 3]",
+            "no mesh has the attribute `vertex_colour`: there are vertex_color",
+            "`vertex_color`",
+        ),
+        (
+            "WorldBegin Texture \"a\" \"float\" @\"meshattribute\" \"string name\" \"face_color\"
+            ObjectBegin \"o\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"rgb face_color\" [1 2 3] ObjectEnd",
+            "the attribute `face_color` is a color",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}

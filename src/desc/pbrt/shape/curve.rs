@@ -94,13 +94,13 @@ pub(super) fn curve(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     })))
 }
 
-fn complain(reader: &mut ParamReader<'_>, name: &str, message: &str) {
+pub(super) fn complain(reader: &mut ParamReader<'_>, name: &str, message: &str) {
     let span = reader.span_of(name);
     reader.report().error(span, message);
 }
 
 /// The meaning of a word, the first by default.
-fn one_of<T: Copy>(reader: &mut ParamReader<'_>, name: &'static str, words: &[(&str, T)]) -> Option<T> {
+pub(super) fn one_of<T: Copy>(reader: &mut ParamReader<'_>, name: &'static str, words: &[(&str, T)]) -> Option<T> {
     let Some((word, span)) = reader.string(name) else {
         return (!reader.has(name)).then(|| words[0].1);
     };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::arrays::{as_many, corners, indices, vectors, vectors3, vertices};
+use super::attributes::attributes;
 use crate::desc::pbrt::params::ParamType;
 use crate::desc::pbrt::reader::ParamReader;
 use crate::desc::{MeshDesc, PatchMeshDesc, ShapeKind};
@@ -19,6 +20,7 @@ pub(super) fn triangle_mesh(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let positions = positions?;
     let count = positions.len();
     let indices = indices(reader, "trianglemesh", count, "triangle")?;
+    let attributes = attributes(reader, count, indices.len());
     Some(ShapeKind::TriangleMesh(Arc::new(MeshDesc {
         positions,
         positions_end: as_many(reader, "P1", end, count),
@@ -26,7 +28,7 @@ pub(super) fn triangle_mesh(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
         tangents: as_many(reader, "S", tangents, count).unwrap_or_default(),
         uvs: as_many(reader, "uv", uvs, count).unwrap_or_default(),
         indices,
-        attributes: Vec::new(),
+        attributes,
     })))
 }
 

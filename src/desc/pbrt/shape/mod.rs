@@ -1,9 +1,11 @@
 //! `Shape`.
 
 mod arrays;
+mod attributes;
 mod curve;
 mod mesh;
 mod quadric;
+mod tubes;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -12,7 +14,7 @@ use super::reader::{ParamReader, unknown_type};
 use crate::desc::{DisplacementDesc, ShapeKind, Textured};
 use crate::error::Span;
 
-const KNOWN: [&str; 8] = [
+const KNOWN: [&str; 9] = [
     "trianglemesh",
     "plymesh",
     "bilinearmesh",
@@ -21,6 +23,7 @@ const KNOWN: [&str; 8] = [
     "cylinder",
     "disk",
     "curve",
+    "tubes",
 ];
 
 /// A shape whose mesh may yet have to be read.
@@ -68,6 +71,7 @@ pub(super) fn read(
         "cylinder" => quadric::cylinder(&mut reader).map(RawKind::Whole),
         "disk" => quadric::disk(&mut reader).map(RawKind::Whole),
         "curve" => curve::curve(&mut reader).map(RawKind::Whole),
+        "tubes" => tubes::tubes(&mut reader).map(RawKind::Whole),
         _ => {
             let classes = (&KNOWN[..], &[][..]);
             let span = reader.span;

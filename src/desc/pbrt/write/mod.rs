@@ -48,11 +48,6 @@ pub fn write(desc: &SceneDesc, path: &Path) -> Result<Vec<String>> {
     Ok(writer.notes.into_iter().collect())
 }
 
-/// The error for what Mitsuba's scenes have, and neither pbrt-v4 nor its extensions can say.
-fn unwritable(what: &str) -> Error {
-    Error::Usage(format!("{what} cannot be written to a pbrt-v4 file"))
-}
-
 /// A file in the making.
 struct Writer<'a> {
     desc: &'a SceneDesc,

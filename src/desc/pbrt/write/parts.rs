@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use crate::desc::{ImageDesc, LensSurface, MeshDesc, RealisticDesc};
+use crate::desc::{AttributeDomain, ImageDesc, LensSurface, MeshAttributeDesc, MeshDesc, RealisticDesc};
 use crate::error::{Error, Result};
 use crate::image_io::{Image, PendingOutput};
 
@@ -117,8 +117,8 @@ fn write_ply(file: &mut impl Write, mesh: &MeshDesc) -> std::io::Result<()> {
         |names: &[&str]| -> String { names.iter().map(|name| format!("property float {name}\n")).collect() };
     write!(
         file,
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{}{}{}element face {}\n\
-         property list uchar uint vertex_indices\nend_header\n",
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{}{}{}{}element face {}\n\
+         property list uchar uint vertex_indices\n{}end_header\n",
         mesh.positions.len(),
         properties(&["x", "y", "z"]),
         if has_normals {
@@ -131,7 +131,9 @@ fn write_ply(file: &mut impl Write, mesh: &MeshDesc) -> std::io::Result<()> {
         } else {
             String::new()
         },
+        attribute_properties(mesh, AttributeDomain::Vertices),
         mesh.indices.len(),
+        attribute_properties(mesh, AttributeDomain::Triangles),
     )?;
     for (i, position) in mesh.positions.iter().enumerate() {
         let normal = mesh.normals.get(i).map(Vec3::to_array);
@@ -140,15 +142,42 @@ fn write_ply(file: &mut impl Write, mesh: &MeshDesc) -> std::io::Result<()> {
         for number in numbers
             .chain(normal.into_iter().flatten())
             .chain(uv.into_iter().flatten())
+            .chain(attribute_row(mesh, AttributeDomain::Vertices, i))
         {
             file.write_all(&number.to_le_bytes())?;
         }
     }
-    for triangle in &mesh.indices {
+    for (i, triangle) in mesh.indices.iter().enumerate() {
         file.write_all(&[3])?;
         for index in triangle {
             file.write_all(&index.to_le_bytes())?;
         }
+        for number in attribute_row(mesh, AttributeDomain::Triangles, i) {
+            file.write_all(&number.to_le_bytes())?;
+        }
     }
     Ok(())
+}
+
+fn attributes_of(mesh: &MeshDesc, domain: AttributeDomain) -> impl Iterator<Item = &MeshAttributeDesc> {
+    mesh.attributes
+        .iter()
+        .filter(move |attribute| attribute.domain == domain)
+}
+
+/// `name_0`, `name_1`, ...: of these the reader makes one attribute, whatever the name.
+fn attribute_properties(mesh: &MeshDesc, domain: AttributeDomain) -> String {
+    let mut lines = String::new();
+    for attribute in attributes_of(mesh, domain) {
+        let name = attribute.name.strip_prefix(domain.prefix()).unwrap_or(&attribute.name);
+        lines.extend((0..attribute.channels).map(|i| format!("property float {name}_{i}\n")));
+    }
+    lines
+}
+
+/// The numbers of a vertex or a triangle.
+fn attribute_row(mesh: &MeshDesc, domain: AttributeDomain, i: usize) -> impl Iterator<Item = f32> {
+    attributes_of(mesh, domain)
+        .flat_map(move |attribute| &attribute.values[i * attribute.channels..(i + 1) * attribute.channels])
+        .copied()
 }

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::Writer;
 use super::entity::{Entity, quoted};
-use super::{Writer, unwritable};
 use crate::desc::{
     CurveDesc, CurveKindDesc, MediumId, MeshDesc, PatchMeshDesc, QuadricDesc, ShapeDesc, ShapeKind, Textured,
+    TubeBasis, TubesDesc,
 };
 use crate::error::Result;
 
@@ -73,7 +74,10 @@ impl Writer<'_> {
                     entity
                 }
                 ShapeKind::Curve(description) => curve(description),
-                ShapeKind::Tubes(_) => return Err(unwritable("a round curve")),
+                ShapeKind::Tubes(description) => {
+                    writer.note("Shape \"tubes\"");
+                    tubes(description)
+                }
                 ShapeKind::DisplacedMesh { mesh, displacement } => {
                     let mut entity = Entity::new("Shape", "plymesh");
                     entity
@@ -124,6 +128,12 @@ impl Writer<'_> {
         put_vectors(&mut entity, "normal", "N", &mesh.normals);
         put_vectors(&mut entity, "vector3", "S", &mesh.tangents);
         put_uvs(&mut entity, &mesh.uvs);
+        for attribute in &mesh.attributes {
+            let kind = if attribute.channels == 1 { "float" } else { "rgb" };
+            entity.singles(kind, &attribute.name, attribute.values.iter().copied());
+            let prefix = attribute.domain.prefix();
+            self.note(&format!("Shape \"trianglemesh\" \"{kind} {prefix}...\""));
+        }
         Ok(entity)
     }
 }
@@ -182,6 +192,20 @@ fn curve(curve: &CurveDesc) -> Entity {
         &first.into_iter().chain(rest).collect::<Vec<_>>(),
     );
     put_vectors(&mut entity, "normal", "N", &curve.normals);
+    entity
+}
+
+fn tubes(tubes: &TubesDesc) -> Entity {
+    let mut entity = Entity::new("Shape", "tubes");
+    let basis = match tubes.basis {
+        TubeBasis::Linear => "linear",
+        TubeBasis::CubicBSpline => "bspline",
+    };
+    entity
+        .string("basis", basis)
+        .integers("counts", tubes.counts.iter().map(|&count| count.into()));
+    put_vectors(&mut entity, "point3", "P", &tubes.points);
+    entity.singles("float", "radius", tubes.radii.iter().copied());
     entity
 }
 

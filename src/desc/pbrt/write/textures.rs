@@ -1,7 +1,7 @@
 //! Textures.
 
+use super::Writer;
 use super::entity::{Entity, transform};
-use super::{Writer, unwritable};
 use crate::desc::{
     ClassedTexture, ImageFilterDesc, ImageMapDesc, MappingDesc, OctavesDesc, SceneDesc, SpectrumDesc, TextureDesc,
     TextureKind, Textured, WrapDesc,
@@ -74,7 +74,8 @@ impl Writer<'_> {
             TextureKind::Bilerp { .. } => "bilerp",
             TextureKind::Image(_) => "imagemap",
             TextureKind::MeshAttribute { .. } => {
-                return Err(unwritable("a texture that is an attribute of a mesh"));
+                self.note("Texture \"meshattribute\"");
+                "meshattribute"
             }
             TextureKind::Fbm(_) => "fbm",
             TextureKind::Wrinkled(_) => "wrinkled",
@@ -130,7 +131,10 @@ impl Writer<'_> {
             }
             TextureKind::Image(map) => self.image_map(e, map)?,
             TextureKind::Fbm(octaves) | TextureKind::Wrinkled(octaves) => put_octaves(e, octaves),
-            TextureKind::Windy | TextureKind::MeshAttribute { .. } => {}
+            TextureKind::Windy => {}
+            TextureKind::MeshAttribute { name, scale } => {
+                e.string("name", name).single("scale", *scale);
+            }
             TextureKind::Marble {
                 octaves,
                 scale,
