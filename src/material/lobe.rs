@@ -9,25 +9,25 @@ use crate::math::{Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::SampledSpectrum;
 
-/// [`BsdfValue`] in the local frame of a lobe, where the cosine is z.
+/// [`BsdfValue`](super::BsdfValue) in the local frame of a lobe, where the cosine is z.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalValue {
-    /// As [`BsdfValue::f`].
+    /// As [`BsdfValue::f`](super::BsdfValue::f).
     pub f: SampledSpectrum,
-    /// As [`BsdfValue::pdf`].
+    /// As [`BsdfValue::pdf`](super::BsdfValue::pdf).
     pub pdf: f32,
 }
 
-/// [`BsdfSample`] in the local frame of a lobe.
+/// [`BsdfSample`](super::BsdfSample) in the local frame of a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalSample {
-    /// As [`BsdfSample::value`].
+    /// As [`BsdfSample::value`](super::BsdfSample::value).
     pub value: SampledSpectrum,
     /// The direction, local.
     pub wi: Vec3,
-    /// As [`BsdfSample::density`].
+    /// As [`BsdfSample::density`](super::BsdfSample::density).
     pub density: Density,
-    /// As [`BsdfSample::eta`].
+    /// As [`BsdfSample::eta`](super::BsdfSample::eta).
     pub eta: f32,
 }
 
@@ -42,10 +42,8 @@ impl LocalSample {
             eta,
         }
     }
-}
 
-impl LocalSample {
-    /// As [`BsdfSample::weight`].
+    /// As [`BsdfSample::weight`](super::BsdfSample::weight).
     #[inline]
     pub(super) fn weight(&self) -> SampledSpectrum {
         match self.density {
