@@ -111,7 +111,8 @@ impl Hull {
         };
         let is_within = self.tangents.is_none_or(|tangents| {
             let out = if end == 0 { -tangents[0] } else { tangents[1] };
-            let slope = if end == 0 { -self.taper } else { self.taper } / self.axis.length().max(f64::MIN_POSITIVE);
+            // A little beyond the plane, as the next piece may touch the ball elsewhere: its slope is another.
+            let slope = self.taper.abs() / self.axis.length().max(f64::MIN_POSITIVE);
             (p - center).dot(out) <= radius * (slope + 1e-6)
         });
         (is_beyond && is_within).then_some(Entry { t, fraction })

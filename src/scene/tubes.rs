@@ -115,6 +115,7 @@ impl Segment {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::DQuat;
 
     #[test]
     fn b_splines_are_on_their_curves_and_go_on_without_a_gap() {
@@ -148,5 +149,42 @@ mod tests {
         assert_eq!(segment.count(), 1);
         let knot = Segment::new(&[Vec3::ZERO; 4], &[0.1; 4]);
         assert!(knot.count() >= 1 && knot.tangent(0.5).is_finite());
+    }
+
+    /// Where the radius changes, the next piece touches the ball of a joint elsewhere: there was a gap between the two, through which rays
+    /// passed.
+    #[test]
+    fn no_ray_passes_a_joint() {
+        let points = [[-1.0, 0.8], [-0.5, -0.9], [0.0, 1.0], [0.5, -0.9]].map(|[x, y]| Vec3::new(x, y, 0.1 * x));
+        let radii = [0.15, 0.1, 0.25, 0.15];
+        let desc = TubesDesc {
+            basis: TubeBasis::CubicBSpline,
+            points: points.to_vec(),
+            radii: radii.to_vec(),
+            counts: vec![4],
+        };
+        let tubes = tubes(&desc, &DAffine3::IDENTITY).unwrap();
+        assert!(tubes.pieces().len() > 8);
+        let segment = Segment::new(&points, &radii);
+        for i in 0..4000 {
+            let u = 0.05 + 0.9 * f64::from(i) / 4000.0;
+            let ((center, radius), tangent) = (segment.at(u), segment.tangent(u));
+            let around = DQuat::from_axis_angle(tangent, 2.4 * f64::from(i));
+            let direction = around * tangent.any_orthonormal_vector();
+            let origin = center - direction * (1.1 * radius);
+            let is_met = (0..tubes.pieces().len()).any(|piece| {
+                let t = tubes.intersect(piece, origin, direction).from(0.0);
+                t.is_some_and(|t| t < radius)
+            });
+            // From inside another part of a tight bend nothing is met.
+            let is_outside = tubes.pieces().iter().all(|piece| {
+                let [a, b] = piece.ends.map(Vec3::as_dvec3);
+                let axis = b - a;
+                let fraction = ((origin - a).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+                let reach = f64::from(piece.radii[0].max(piece.radii[1]));
+                origin.distance(a + axis * fraction) > reach
+            });
+            assert!(is_met || !is_outside, "{u}");
+        }
     }
 }
