@@ -166,6 +166,7 @@ mod tests {
         let tubes = tubes(&desc, &DAffine3::IDENTITY).unwrap();
         assert!(tubes.pieces().len() > 8);
         let segment = Segment::new(&points, &radii);
+        let mut asked = 0;
         for i in 0..4000 {
             let u = 0.05 + 0.9 * f64::from(i) / 4000.0;
             let ((center, radius), tangent) = (segment.at(u), segment.tangent(u));
@@ -185,6 +186,8 @@ mod tests {
                 origin.distance(a + axis * fraction) > reach
             });
             assert!(is_met || !is_outside, "{u}");
+            asked += usize::from(is_outside);
         }
+        assert!(asked > 2000, "only {asked} rays came from outside");
     }
 }
