@@ -14,7 +14,7 @@ use std::mem::MaybeUninit;
 use self::stack::Stack;
 use super::kernel::Kernel;
 use super::lanes::Lanes;
-use super::leaf::{Block, FixedBlock, LANES as TRIANGLES};
+use super::leaf::{Block, Corners, FixedBlock, LANES as TRIANGLES};
 use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::prepare::{Prepared, Rays, Row};
 use super::query::{Asked, CULL_SLACK, Candidate, Query};
@@ -226,38 +226,26 @@ impl<'a, const N: usize> Packet<'a, N> {
                 continue;
             }
             let [x, y, z] = self.axes;
-            let offset = |corner: usize, axis: usize| {
-                let corner = s.splat(corners.0[corner][axis][triangle]);
-                s.sub(corner, s.load(&self.prepared.rays.origin[axis]))
-            };
-            let depth = [offset(0, z), offset(1, z), offset(2, z)];
-            let across = |axis: usize, scale: &Row<N>| {
-                let scale = s.load(scale);
-                let sheared = |corner: usize| s.sub(offset(corner, axis), s.mul(scale, depth[corner]));
-                [sheared(0), sheared(1), sheared(2)]
-            };
-            let ([ax, bx, cx], [ay, by, cy]) = (across(x, &self.prepared.scale[0]), across(y, &self.prepared.scale[1]));
+            let offsets = Offsets::of(&self.prepared.rays, corners, triangle);
+            let depth = offsets.along(s, z);
+            let [ax, bx, cx] = sheared(s, offsets.along(s, x), &self.prepared.scale[0], depth);
+            let [ay, by, cy] = sheared(s, offsets.along(s, y), &self.prepared.scale[1], depth);
             let u = s.sub(s.mul(cx, by), s.mul(cy, bx));
             let v = s.sub(s.mul(ax, cy), s.mul(ay, cx));
             let w = s.sub(s.mul(bx, ay), s.mul(by, ax));
             // A NaN is lost or makes neither true: the lane is not passed over here unless the other two differ in sign.
-            let (least, greatest) = (s.least(s.least(u, v), w), s.greatest(s.greatest(u, v), w));
+            let (lowest, highest) = (least(s, [u, v, w]), greatest(s, [u, v, w]));
             let zero = s.splat(0.0);
-            let missed = s.and(s.lt(least, zero), s.lt(zero, greatest));
+            let missed = s.and(s.lt(lowest, zero), s.lt(zero, highest));
             let possible = lanes & !s.bits(missed);
             if possible == 0 {
                 continue;
             }
-            let enter = |[a, b, c]: [S::F; 3]| s.least(s.least(a, b), c);
-            let leave = |[a, b, c]: [S::F; 3]| s.greatest(s.greatest(a, b), c);
-            let along = |axis: usize| {
-                let inverse = s.load(&self.prepared.inverse[axis]);
-                [0, 1, 2].map(|corner| s.mul(offset(corner, axis), inverse))
-            };
-            let scale = s.load(&self.prepared.scale[2]);
-            let (along_x, along_y, along_z) = (along(x), along(y), depth.map(|z| s.mul(scale, z)));
-            let first = leave([enter(along_x), enter(along_y), enter(along_z)]);
-            let last = enter([leave(along_x), leave(along_y), leave(along_z)]);
+            let along_x = times(s, offsets.along(s, x), &self.prepared.inverse[x]);
+            let along_y = times(s, offsets.along(s, y), &self.prepared.inverse[y]);
+            let along_z = times(s, depth, &self.prepared.scale[2]);
+            let first = greatest(s, [least(s, along_x), least(s, along_y), least(s, along_z)]);
+            let last = least(s, [greatest(s, along_x), greatest(s, along_y), greatest(s, along_z)]);
             // Other rays miss the box, by rounding only.
             let boxed = s.le(first, last);
             let tnear = s.load(&self.prepared.rays.tnear);
@@ -271,12 +259,13 @@ impl<'a, const N: usize> Packet<'a, N> {
             // Zero, or NaN where the products overflow.
             let sure = s.and(s.and(s.lt(zero, s.abs(u)), s.lt(zero, s.abs(v))), s.lt(zero, s.abs(w)));
             let planes = planes.get_or_insert_with(|| s.planes(corners));
+            let rays = &self.prepared.rays;
             let distances = s.plane_distance(
                 planes,
                 triangle,
                 self.axes,
-                self.axes.map(|axis| &self.prepared.rays.origin[axis]),
-                self.axes.map(|axis| &self.prepared.rays.direction[axis]),
+                [&rays.origin[x], &rays.origin[y], &rays.origin[z]],
+                [&rays.direction[x], &rays.direction[y], &rays.direction[z]],
             );
             let t = s.least(s.greatest(distances, first), last);
             let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
@@ -384,6 +373,64 @@ impl<'a, const N: usize> Packet<'a, N> {
             self.take(lane, &query);
         }
     }
+}
+
+/// A triangle's corners, seen from the origins of rays.
+struct Offsets<'a, const N: usize> {
+    rays: &'a Rays<N>,
+    corners: &'a Corners,
+    triangle: usize,
+}
+
+// Functions, not closures nor `array::map`: those may be left out of line, where they are compiled without the instructions of `S`.
+impl<'a, const N: usize> Offsets<'a, N> {
+    #[inline(always)]
+    fn of(rays: &'a Rays<N>, corners: &'a Corners, triangle: usize) -> Self {
+        Self {
+            rays,
+            corners,
+            triangle,
+        }
+    }
+
+    /// The offsets of the three corners along an axis.
+    #[inline(always)]
+    fn along<S: Lanes<N>>(&self, s: S, axis: usize) -> [S::F; 3] {
+        [
+            self.of_corner(s, 0, axis),
+            self.of_corner(s, 1, axis),
+            self.of_corner(s, 2, axis),
+        ]
+    }
+
+    #[inline(always)]
+    fn of_corner<S: Lanes<N>>(&self, s: S, corner: usize, axis: usize) -> S::F {
+        let corner = s.splat(self.corners.0[corner][axis][self.triangle]);
+        s.sub(corner, s.load(&self.rays.origin[axis]))
+    }
+}
+
+/// Offsets across the rays, of the corners that are at `depth`.
+#[inline(always)]
+fn sheared<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3], scale: &Row<N>, depth: [S::F; 3]) -> [S::F; 3] {
+    let [da, db, dc] = times(s, depth, scale);
+    [s.sub(a, da), s.sub(b, db), s.sub(c, dc)]
+}
+
+#[inline(always)]
+fn times<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3], factor: &Row<N>) -> [S::F; 3] {
+    let factor = s.load(factor);
+    [s.mul(factor, a), s.mul(factor, b), s.mul(factor, c)]
+}
+
+#[inline(always)]
+fn least<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3]) -> S::F {
+    s.least(s.least(a, b), c)
+}
+
+#[inline(always)]
+fn greatest<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3]) -> S::F {
+    s.greatest(s.greatest(a, b), c)
 }
 
 #[inline(always)]

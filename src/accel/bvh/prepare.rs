@@ -71,14 +71,21 @@ pub struct Prepared<const N: usize> {
     pub usual: u32,
 }
 
+/// What one ray has of each row.
+#[inline(always)]
+fn column<const N: usize>(rows: &[Row<N>; 3], lane: usize) -> [f32; 3] {
+    [rows[0][lane], rows[1][lane], rows[2][lane]]
+}
+
 impl<const N: usize> Prepared<N> {
     /// Prepares rays.
     #[inline(always)]
     pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>) -> Self {
-        let origin = rays.origin.each_ref().map(|row| s.load(row));
-        let direction = rays.direction.each_ref().map(|row| s.load(row));
-        let size = origin.map(|x| s.abs(x));
-        let slope = direction.map(|x| s.abs(x));
+        // Not by `array::map`, which is compiled without the instructions that `s` has.
+        let load = |rows: &[Row<N>; 3]| [s.load(&rows[0]), s.load(&rows[1]), s.load(&rows[2])];
+        let abs = |[x, y, z]: [S::F; 3]| [s.abs(x), s.abs(y), s.abs(z)];
+        let (origin, direction) = (load(&rays.origin), load(&rays.direction));
+        let (size, slope) = (abs(origin), abs(direction));
         let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
         let (greatest, steepest) = (most(size), most(slope));
         let least = s.mul(s.splat(LEAST_SLOPE), steepest);
@@ -97,7 +104,7 @@ impl<const N: usize> Prepared<N> {
             far_shift: [[0.0; N]; 3],
             scale: [[0.0; N]; 3],
             inverse: [[0.0; N]; 3],
-            negative: direction.map(|d| s.signs(d)),
+            negative: [s.signs(dx), s.signs(dy), s.signs(dz)],
             greatest: [bits[0], bits[1], !(bits[0] | bits[1])],
             usual: s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest))),
             rays,
@@ -135,26 +142,32 @@ impl<const N: usize> Prepared<N> {
     #[inline(always)]
     pub fn shear(&self, lane: usize) -> Shear {
         let axes = self.axes(lane);
+        let [x, y, z] = axes;
+        let turned = |rows: &[Row<N>; 3]| [rows[x][lane], rows[y][lane], rows[z][lane]];
         Shear {
             axes,
-            origin: axes.map(|axis| self.rays.origin[axis][lane]),
-            direction: axes.map(|axis| self.rays.direction[axis][lane]),
-            scale: self.scale.each_ref().map(|row| row[lane]),
-            inverse: [self.inverse[axes[0]][lane], self.inverse[axes[1]][lane]],
+            origin: turned(&self.rays.origin),
+            direction: turned(&self.rays.direction),
+            scale: column(&self.scale, lane),
+            inverse: [self.inverse[x][lane], self.inverse[y][lane]],
         }
     }
 
     /// One ray.
     #[inline(always)]
     pub fn local(&self, lane: usize) -> LocalRay {
-        let at = |rows: &[Row<N>; 3]| rows.each_ref().map(|row| row[lane]);
+        let plane = |scale: &[Row<N>; 3], shift: &[Row<N>; 3]| {
+            let at = |axis: usize| [scale[axis][lane], shift[axis][lane]];
+            [at(0), at(1), at(2)]
+        };
+        let negative = |axis: usize| (self.negative[axis] >> lane & 1) as usize;
         LocalRay {
-            origin: Vec3::from_array(at(&self.rays.origin)),
-            direction: Vec3::from_array(at(&self.rays.direction)),
+            origin: Vec3::from_array(column(&self.rays.origin, lane)),
+            direction: Vec3::from_array(column(&self.rays.direction, lane)),
             slab: Slab {
-                near: [0, 1, 2].map(|axis| [self.near_scale[axis][lane], self.near_shift[axis][lane]]),
-                far: [0, 1, 2].map(|axis| [self.far_scale[axis][lane], self.far_shift[axis][lane]]),
-                negative: self.negative.map(|signs| (signs >> lane & 1) as usize),
+                near: plane(&self.near_scale, &self.near_shift),
+                far: plane(&self.far_scale, &self.far_shift),
+                negative: [negative(0), negative(1), negative(2)],
             },
             shear: self.shear(lane),
         }
