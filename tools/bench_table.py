@@ -16,7 +16,8 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORLDS = "terrain:50k spheres:50k soup:50k hair:50k slivers:100k soup:500k terrain:1M spheres:1M terrain:10M instances:10M".split()
 SCENES = "cornell-box glass-and-mirror instances materials".split()
-# Rates over those of Embree's fast mode by its best call, builds of high quality, one thread.
+# Rates over those of Embree's fast mode by its call for single rays, builds of high quality, one thread: what its best calls have on a machine
+# with AVX2.
 GOALS = {"camera": 2.0, "shadow": 1.4, "bounce": 1.1}
 
 
@@ -25,8 +26,8 @@ def mean(values):
     return math.exp(sum(map(math.log, values)) / len(values)) if values else None
 
 
-def best(stream, family, quality="high", usual=False):
-    """The fastest of a family, on the fewest threads."""
+def best(stream, family, quality="high", way=None):
+    """The fastest of a family, or one way of it, on the fewest threads."""
     threads = min(result["threads"] for result in stream["results"])
     rates = [
         result["mrays"]
@@ -34,7 +35,7 @@ def best(stream, family, quality="high", usual=False):
         if result["family"] == family
         and result["quality"] == quality
         and result["threads"] == threads
-        and (not usual or result["way"] == "as renders do")
+        and (way is None or result["way"] == way)
     ]
     return max(rates, default=None)
 
@@ -45,10 +46,11 @@ def kinds(report):
     return [kind for kind in order if kind in there]
 
 
-def ratio(case, kind, family):
+def ratio(case, kind, family, way=None):
+    """Our rate, as renders have it, over that of a family by its best way or by one."""
     for stream in case["streams"]:
         if stream["kind"] == kind:
-            ours, theirs = best(stream, "bvh", usual=True), best(stream, family)
+            ours, theirs = best(stream, "bvh", way="as renders do"), best(stream, family, way=way)
             return ours / theirs if ours and theirs else None
     return None
 
@@ -85,9 +87,13 @@ def ratios(report):
     yield ""
     for goal, least in GOALS.items():
         of_goal = [kind for kind in all_kinds if kind.startswith(goal)]
-        got = mean(ratio(case, kind, "embree-fast") for case in large for kind in of_goal)
+        got = mean(ratio(case, kind, "embree-fast", "single") for case in large for kind in of_goal)
         if got:
-            yield f"- {goal} rays: {got:.2f} of Embree's fast mode; the goal is {least}: {'met' if got >= least else 'not met'}."
+            best_call = got / mean(ratio(case, kind, "embree-fast") for case in large for kind in of_goal)
+            yield (
+                f"- {goal} rays: {got:.2f} of Embree's fast mode by its call for single rays, where its best call has {best_call:.2f}; "
+                f"the goal is {least}: {'met' if got >= least else 'not met'}."
+            )
 
 
 def builds(report):
@@ -97,7 +103,7 @@ def builds(report):
         for quality in ("low", "medium", "high"):
             by_family = {b["family"]: b for b in case["builds"] if b["quality"] == quality}
             ours, theirs = by_family.get("bvh"), by_family.get("embree-fast")
-            speeds = [mean(best(stream, family, quality, usual=True) for stream in case["streams"]) for family in ("bvh", "embree-fast")]
+            speeds = [mean(best(stream, family, quality, "as renders do") for stream in case["streams"]) for family in ("bvh", "embree-fast")]
             row.append(
                 f"{ours['seconds']:.3f} s, {ours['bytes_per_primitive']:.0f} B, {number(speeds[0])}; "
                 f"{theirs['seconds']:.3f} s, {theirs['bytes_per_primitive']:.0f} B, {number(speeds[1])}"
