@@ -1,7 +1,7 @@
-"""Measures relMSE at equal processor time: ways of choosing lights, samplers, colour modes, integrators. Prints the tables of
-docs/measurements.md, or those named.
+"""Measures relMSE at equal processor time: ways of choosing lights, samplers, colour modes, integrators, also on caustics. Prints the
+tables of docs/measurements.md, or those named.
 
-    python3 tools/equal_time.py target/release/lucerna [lights] [samplers] [colours] [integrators]
+    python3 tools/equal_time.py target/release/lucerna [lights] [samplers] [colours] [integrators] [caustics]
 
 Each configuration is rendered with the same number of samples on one thread, by five seeds; its error is scaled to the time of
 the first one (error times time is what a Monte Carlo estimator keeps). Time is the median of three runs' processor time, less
@@ -9,6 +9,7 @@ that of a run with a single sample.
 """
 
 import json
+import math
 import pathlib
 import re
 import resource
@@ -61,6 +62,54 @@ class Bench:
             error = statistics.mean(errors) * time / base_time
             base_error = base_error or error
             print(f"| {name} | {samples * base_time / time:.1f} | {error:.3g} | {error / base_error:.2f} |", flush=True)
+
+
+    def compare(self, picture, reference):
+        return json.loads(self.run("compare", picture, reference)[0])["relmse"]
+
+    def caustics(self, title, references, cases):
+        """`references`: integrator and samples, of two whose difference tells their noise. `cases`: integrator and samples."""
+        print(f"\n{title}\n\n| | samples | seconds | relMSE | error times time |\n|---|---|---|---|---|")
+        pair = [self.directory / f"reference-{seed}.exr" for seed in (998, 999)]
+        for path, seed in zip(pair, (998, 999)):
+            self.render(path, references[1], seed, ["--integrator", references[0], *DEPTH])
+        noise = 0.5 * self.compare(*pair)
+        picture = self.directory / "picture.exr"
+        # What it takes to read the scene. Learning where caustics are counts.
+        start = self.render(picture, 1, 0, ["--integrator", "path", "--max-depth", "1"])
+        base = None
+        for integrator, samples in cases:
+            options = ["--integrator", integrator, *DEPTH]
+            times, errors = [], []
+            for seed in list(SEEDS)[:3]:
+                times.append(self.render(picture, samples, seed, options) - start)
+                errors.append(statistics.mean(self.compare(picture, path) for path in pair) - noise)
+            time, error = statistics.median(times), statistics.mean(errors)
+            base = base or time * error
+            print(f"| {integrator} | {samples} | {time:.2f} | {error:.3g} | {time * error / base:.2g} |", flush=True)
+        print(f"\nThe references' own relMSE, {noise:.2g}, is taken off.", flush=True)
+
+
+DEPTH = ["--max-depth", "8"]
+
+
+def pool_under_a_lamp(directory):
+    """The pool with a lamp 12 degrees wide for the sun, which paths from the eye can meet: as much light from the same direction."""
+    text = (SCENES / "pool.pbrt").read_text()
+    sun = re.search(r'LightSource "distant" "point3 from" \[ (.*?) \] .*? "blackbody L" (\d+) "float scale" (\S+)\n', text)
+    towards, temperature, irradiance = sun[1].split(), sun[2], float(sun[3])
+    sine = math.sin(math.radians(6))
+    center = [10 * float(x) / math.hypot(*map(float, towards)) for x in towards]
+    lamp = f"""AttributeBegin
+    AreaLightSource "diffuse" "blackbody L" {temperature} "float scale" {irradiance / (math.pi * sine * sine)}
+    Translate {center[0]} {center[1]} {center[2]}
+    Shape "sphere" "float radius" {10 * sine}
+AttributeEnd
+"""
+    text = text.replace(sun[0], lamp).replace('"parts/', f'"{SCENES}/parts/')
+    path = pathlib.Path(directory) / "pool-under-a-lamp.pbrt"
+    path.write_text(text)
+    return path
 
 
 def with_light_sampler(name, directory):
@@ -117,7 +166,20 @@ def integrators(program, directory):
         bench.table(f"Integrators, `{scene.stem}`, 64 x 64 pixels", 32, reference_samples, cases, "bdpt")
 
 
-TABLES = {"lights": lights, "samplers": samplers, "colours": colours, "integrators": integrators}
+def caustics(program, directory):
+    """Where light comes by way of mirrors and glass. What bdpt does not find in the pool path finds now and then."""
+    small = [("path", 64), ("bdpt", 32), ("sppm", 64)]
+    box = Bench(program, SCENES / "jensen-box.pbrt", "64x64", directory)
+    box.caustics("`jensen-box`, 64 x 64 pixels", ("bdpt", 1024), [*small, ("photon", 16)])
+    ring = Bench(program, SCENES / "ring.pbrt", "64x48", directory)
+    ring.caustics("`ring`, 64 x 48 pixels", ("bdpt", 2048), small)
+    pool = Bench(program, pool_under_a_lamp(directory), "64x48", directory)
+    pool.caustics("`pool` under a lamp, 64 x 48 pixels", ("path", 4096), small)
+    box = Bench(program, SCENES / "jensen-box.pbrt", "256x256", directory)
+    box.caustics("`jensen-box`, 256 x 256 pixels", ("bdpt", 192), [("path", 32), ("sppm", 32), ("photon", 16)])
+
+
+TABLES = {"lights": lights, "samplers": samplers, "colours": colours, "integrators": integrators, "caustics": caustics}
 
 
 def main():

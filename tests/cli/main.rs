@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod info;
 mod list;
+mod photons;
 mod render;
 mod streams;
 mod usage;

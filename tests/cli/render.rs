@@ -137,7 +137,9 @@ fn strategies_are_layers_of_one_file_and_an_overview() {
         .collect();
     names.sort();
     let strategies = ["s0.t2", "s0.t3", "s1.t2", "s2.t1"];
-    let mut expected = vec![String::new(), "longer.weighted.".to_owned()];
+    let mut expected = ["", "eye-only.", "light-only.", "longer.weighted."]
+        .map(str::to_owned)
+        .to_vec();
     expected.extend(strategies.map(|name| format!("{name}.unweighted.")));
     expected.extend(strategies.map(|name| format!("{name}.weighted.")));
     expected.sort();
@@ -146,9 +148,9 @@ fn strategies_are_layers_of_one_file_and_an_overview() {
     let data = |path: &std::path::Path| read_exr(path).expect("a picture").0.data().to_vec();
     assert_eq!(data(&file), data(&sandbox.path("plain.exr")));
     assert_eq!(data(&sandbox.path("ball.exr")), data(&sandbox.path("plain.exr")));
-    // Three columns of s; two rows of lengths in full and two weighted, and one of longer paths.
+    // Three columns of s; a row of views, two rows of lengths in full and two weighted, and one of longer paths.
     let overview = read(&sandbox.path("out/of/ball-strategies.png")).expect("a picture");
-    assert_eq!([overview.width(), overview.height()], [3 * 27 + 3, 5 * 19 + 3]);
+    assert_eq!([overview.width(), overview.height()], [3 * 27 + 3, 6 * 19 + 3]);
 }
 
 /// A film that keeps more than colours writes it to EXR files, and says so where it cannot.

@@ -38,7 +38,7 @@ fn every_light_is_what_path_finds() {
         let path = Integrator::from_desc(&built.desc.integrator).with_max_depth(depth);
         let reference = runs(&built, path, 64, 101, [8, 8]);
         let two_pass = photon(depth, |p| {
-            p.global_photons = Some(10_000);
+            p.global_photons = Some(5000);
             p.max_distance = Some(0.12);
             p.passes = 8;
             p.final_gather_samples = 4;

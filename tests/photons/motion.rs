@@ -8,11 +8,11 @@ use crate::common::full_tier;
 use crate::common::render::blocks;
 use crate::{assert_agree, build, film, photon, quad, runs, sppm};
 
-/// A diffuse ball and a ball of glass that move before a wall, under a large lamp.
+/// A diffuse ball and a ball of glass that move before a wall, under a large lamp, seen by a lens.
 fn scene() -> String {
     format!(
-        "LookAt 0 1 -4  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 38 \"float shutteropen\" 0 \"float shutterclose\" 1\n{}WorldBegin\n\
-         AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [3 2.7 2.4]\n{}AttributeEnd\n\
+        "LookAt 0 1 -4  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 38 \"float shutteropen\" 0 \"float shutterclose\" 1 \"float lensradius\" 0.05 \"float focaldistance\" 4\n\
+         {}WorldBegin\nAttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [3 2.7 2.4]\n{}AttributeEnd\n\
          Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.5]\n{}{}\
          AttributeBegin ActiveTransform EndTime Translate 0.8 0.4 0 ActiveTransform All Translate -0.9 0.5 0\n\
          Material \"diffuse\" \"rgb reflectance\" [0.8 0.3 0.3] Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n\

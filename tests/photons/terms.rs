@@ -86,7 +86,7 @@ fn rooms() -> Vec<(&'static str, String)> {
 fn both(max_depth: Option<u32>) -> [(Integrator, u32); 2] {
     let two_pass = photon(max_depth, |p| {
         p.global_photons = Some(10_000);
-        p.caustic_photons = Some(10_000);
+        p.caustic_photons = Some(3000);
         p.max_distance = Some(0.1);
         p.passes = 4;
         p.final_gather_samples = 4;

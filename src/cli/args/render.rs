@@ -72,8 +72,10 @@ pub struct RenderArgs {
 
     /// With the integrator `bdpt`: write what each strategy (s, t) found into this directory
     ///
-    /// SCENE-strategies.exr has a layer for each, without its weight and with it (s2.t3.unweighted, s2.t3.weighted), and one for all
-    /// longer paths; SCENE-strategies.png shows them, in rows by path length and columns by s. It takes memory, which is checked first.
+    /// SCENE-strategies.exr has a layer for each, without its weight and with it (s2.t3.unweighted, s2.t3.weighted), one for all longer
+    /// paths, and what is found from one side alone, with as many samples (eye-only, by `path`; light-only, by `lightpath`). SCENE-strategies.png
+    /// shows these two and the picture, and below them the strategies, in rows by path length and columns by s. It takes memory, which is
+    /// checked first.
     #[arg(long, value_name = "DIR")]
     pub strategies: Option<PathBuf>,
 

@@ -88,7 +88,8 @@ impl Job<'_> {
             reporter.say(&format!("the picture is in {} instead", written.path.display()));
         }
         if let Some(outputs) = strategies {
-            outputs.write(&film, &view, &metadata, self.args.exposure)?;
+            let one_sided = self.one_sided(&prepared.scene, &view, &integrator);
+            outputs.write(&film, one_sided, &view, &metadata, self.args.exposure)?;
         }
         report_dropped(&reporter, &stats, self.args.seed, path);
         let mut statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);

@@ -1,4 +1,5 @@
-//! `--strategies`: what each strategy (s, t) of a bidirectional render found, as the layers of one file and as one overview.
+//! `--strategies`: what each strategy (s, t) of a bidirectional render found, and what is found from one side alone, as the layers of one file
+//! and as one overview.
 
 use std::path::Path;
 
@@ -9,8 +10,8 @@ use crate::desc::SceneDesc;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::image_io::{Image, ImageMetadata, PendingOutput, Window};
-use crate::integrator::{Integrator, Pyramid, Strategies, StrategyLayer};
-use crate::scene::View;
+use crate::integrator::{Integrator, Pyramid, Silent, Strategies, StrategyLayer};
+use crate::scene::{Scene, View};
 
 /// The files for the strategies of a picture.
 pub(super) struct StrategyOutputs {
@@ -18,6 +19,9 @@ pub(super) struct StrategyOutputs {
     layers: PendingOutput,
     overview: PendingOutput,
 }
+
+/// What is found from one side alone: the name of the layer, and the integrator.
+const ONE_SIDED: [(&str, &str); 2] = [("eye-only", "path"), ("light-only", "lightpath")];
 
 /// Bytes for each pixel of a layer while files are written: its values in the image, in the file's order, and compressed.
 const BYTES_TO_WRITE: u64 = 3 * 12;
@@ -73,12 +77,24 @@ impl Job<'_> {
             overview: open("png")?,
         }))
     }
+
+    /// The pictures by paths from the eye alone and from the lights alone, with as many samples.
+    pub(super) fn one_sided(&self, scene: &Scene, view: &View, integrator: &Integrator) -> [Vec<f32>; ONE_SIDED.len()] {
+        ONE_SIDED.map(|(_, name)| {
+            let integrator = integrator.named(name);
+            let film = integrator.film(view);
+            self.pool.install(|| integrator.render(scene, view, &film, &Silent));
+            film.develop()
+        })
+    }
 }
 
 /// Refuses films that memory cannot hold.
 fn check_memory(pyramid: Pyramid, view: &View) -> Result<()> {
-    let layers = pyramid.layers().len() as u64 + 1;
-    let wanted = view.crop.area() * (pyramid.bytes_per_pixel() + layers * BYTES_TO_WRITE);
+    let layers = (1 + ONE_SIDED.len() + pyramid.layers().len()) as u64;
+    // A picture from one side is made when the film with all layers is there.
+    let films = pyramid.bytes_per_pixel() + Film::bytes_per_pixel(true);
+    let wanted = view.crop.area() * (films + layers * BYTES_TO_WRITE);
     match memory::available_bytes() {
         Some(available) if wanted > available => Err(Error::Usage(format!(
             "the strategies of {}x{} pixels for paths of up to {} edges take {} of memory, and there are {}: \
@@ -94,20 +110,31 @@ fn check_memory(pyramid: Pyramid, view: &View) -> Result<()> {
 }
 
 impl StrategyOutputs {
-    /// Writes both files. `film` is one of [`Integrator::film_of_strategies`], rendered; `exposure` is that of the overview.
-    pub(super) fn write(self, film: &Film, view: &View, metadata: &ImageMetadata, exposure: f32) -> Result<()> {
+    /// Writes both files. `film` is one of [`Integrator::film_of_strategies`], rendered; `one_sided` are the pictures of
+    /// [`Job::one_sided`]; `exposure` is that of the overview.
+    pub(super) fn write(
+        self,
+        film: &Film,
+        one_sided: [Vec<f32>; ONE_SIDED.len()],
+        view: &View,
+        metadata: &ImageMetadata,
+        exposure: f32,
+    ) -> Result<()> {
         let layers = self.pyramid.layers();
-        let pictures: Vec<Vec<f32>> = film.layers().iter().map(Film::develop).collect();
+        let mut pictures = Vec::from(one_sided);
+        pictures.push(film.develop());
+        pictures.extend(film.layers().iter().map(Film::develop));
         let overview = overview(self.pyramid, &layers, &pictures, view.crop.width() as usize)?;
-        let names = ["".to_owned()]
-            .into_iter()
+        let one_sided = ONE_SIDED.iter().map(|(layer, _)| format!("{layer}."));
+        let names = one_sided
+            .chain([String::new()])
             .chain(layers.iter().map(|layer| layer.name() + "."));
         let channels = names.flat_map(|layer| ["R", "G", "B"].map(|channel| format!("{layer}{channel}")));
         let channels: Vec<String> = channels.collect();
-        let picture = film.develop();
-        let mut data = Vec::with_capacity(picture.len() * (layers.len() + 1));
-        for first in (0..picture.len()).step_by(3) {
-            for source in std::iter::once(&picture).chain(&pictures) {
+        let values = pictures.iter().map(Vec::len).sum();
+        let mut data = Vec::with_capacity(values);
+        for first in (0..values / pictures.len()).step_by(3) {
+            for source in &pictures {
                 data.extend_from_slice(&source[first..first + 3]);
             }
         }
@@ -129,24 +156,28 @@ const GAP: usize = 3;
 /// What there is no picture in.
 const BACKGROUND: f32 = 0.02;
 
-/// The pyramid in full above the one that is weighted: a row for each path length, a column for each s. Longer paths are the last row.
+/// What is found from the eye alone, from the lights alone, and from both; below them the pyramid in full above the one that is weighted: a row
+/// for each path length, a column for each s. Longer paths are the last row. The first `pictures` are those of the first row, the others
+/// those of `layers`.
 fn overview(pyramid: Pyramid, layers: &[StrategyLayer], pictures: &[Vec<f32>], width: usize) -> Result<Image> {
     let height = pictures.first().map_or(0, |picture| picture.len() / 3 / width);
     let step = width.max(height).div_ceil(CELL);
     let (cell_width, cell_height) = (width.div_ceil(step), height.div_ceil(step));
     let edges = pyramid.edges() as usize;
-    let (columns, rows) = (edges + 1, 2 * edges + 1);
+    let views = ONE_SIDED.len() + 1;
+    let (columns, rows) = (views.max(edges + 1), 2 * edges + 2);
     let total_width = columns * (cell_width + GAP) + GAP;
     let total_height = rows * (cell_height + GAP) + GAP;
     let mut data = vec![BACKGROUND; 3 * total_width * total_height];
-    for (&layer, picture) in layers.iter().zip(pictures) {
-        let (row, column) = match layer {
-            StrategyLayer::Strategy { s, t, weighted } => {
-                let row = (s + t) as usize - 2;
-                (if weighted { edges + row } else { row }, s as usize)
-            }
-            StrategyLayer::Longer => (2 * edges, 0),
-        };
+    let of_layer = |&layer: &StrategyLayer| match layer {
+        StrategyLayer::Strategy { s, t, weighted } => {
+            let row = (s + t) as usize - 1;
+            (if weighted { edges + row } else { row }, s as usize)
+        }
+        StrategyLayer::Longer => (2 * edges + 1, 0),
+    };
+    let places = (0..views).map(|column| (0, column)).chain(layers.iter().map(of_layer));
+    for ((row, column), picture) in places.zip(pictures) {
         let corner = [GAP + column * (cell_width + GAP), GAP + row * (cell_height + GAP)];
         for y in 0..cell_height {
             for x in 0..cell_width {

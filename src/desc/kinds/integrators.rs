@@ -166,7 +166,7 @@ pub static RADIUS: Parameter = Parameter::float(
     "radius",
     0.0,
     FloatRange::NotNegative,
-    "Radius of the estimates of the first pass; 0 for three pixels",
+    "Radius of the estimates of the first pass; 0 for three pixels, and six for indirect light",
 )
 .unit("scene units");
 pub static COS_SAMPLE: Parameter = Parameter::flag(

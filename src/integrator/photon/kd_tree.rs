@@ -20,6 +20,7 @@ mod build;
 mod candidates;
 mod nodes;
 mod search;
+mod select;
 mod simd;
 #[cfg(test)]
 mod tests;

@@ -26,8 +26,8 @@ const CAUSTIC_PHOTONS: u32 = 200_000;
 const GLOBAL_PHOTONS: u32 = 50_000;
 /// How far away photons may be, of the scene's radius, if nobody says.
 const MAX_DISTANCE: f32 = 0.02;
-/// Of the photons of a progressive pass, those that are aimed at what makes caustics.
-const CAUSTIC_SHARE: f64 = 0.5;
+/// Of the photons of a progressive pass, those that are aimed at what makes caustics: they land close together, the others all over the scene.
+const CAUSTIC_SHARE: f64 = 0.3;
 
 /// A render in passes.
 struct Render<'a> {

@@ -88,8 +88,11 @@ pub(super) fn moment_of(seed: u64, pass: u32) -> Moment {
 
 /// Photon paths of a wave.
 const CHUNK: u32 = 1 << 12;
-/// Waves between two looks at how many photons there are.
-const CHUNKS_PER_ROUND: u32 = 16;
+/// Paths between two looks at how many photons there are, at least and at most.
+const LEAST_ROUND: u32 = 1 << 8;
+const MOST_ROUND: u32 = CHUNK * 16;
+/// How many more paths than are probably needed: another round costs more than a few of them.
+const ROUND_MARGIN: f64 = 1.02;
 /// Photons emitted for each that is wanted, at most.
 const MOST_PER_STORED: u64 = 100;
 
@@ -110,7 +113,11 @@ pub(super) fn shoot(
     let mut shot = Shot::default();
     let mut first = 0;
     while first < emitted {
-        let end = emitted.min(first.saturating_add(CHUNK * CHUNKS_PER_ROUND));
+        let paths = match until {
+            Until::Stored(_) => paths_until(&shot, stored),
+            Until::Emitted(_) => MOST_ROUND,
+        };
+        let end = emitted.min(first.saturating_add(paths));
         for chunk in follow(stand, tracer, numbers, |_| moment, first..end) {
             stats.merge(chunk.stats);
             if !take(&mut shot, &chunk.landed, chunk.paths, stored) {
@@ -120,6 +127,14 @@ pub(super) fn shoot(
         first = end;
     }
     shot
+}
+
+/// The paths that it probably takes until `wanted` photons are stored, as far as the photons so far tell, or some of them.
+fn paths_until(shot: &Shot, wanted: usize) -> u32 {
+    let (missing, stored) = ((wanted - shot.photons.len()) as f64, shot.photons.len().max(1) as f64);
+    let paths = ROUND_MARGIN * missing * shot.emitted as f64 / stored;
+    // Conversion saturates.
+    (paths as u32).clamp(LEAST_ROUND, MOST_ROUND)
 }
 
 /// Adds the photons of a chunk, path after path, as long as there is room; whether there was for all.

@@ -1,26 +1,15 @@
 //! Builds a tree.
 
-use std::cmp::Ordering;
-
 use rayon::prelude::*;
 
 use super::KdTree;
 use super::nodes::{LEAF, Leaf, Node, WIDTH};
+use super::select::{self, Item};
 use super::simd::Dispatch;
 use crate::math::{Vec3, Vec4};
 
 /// So many points are split by one thread.
 const SEQUENTIAL: usize = 1 << 12;
-
-/// A point on its way to its place: its coordinates, and the bits of its index, so that it is one vector.
-#[derive(Clone, Copy, Debug)]
-struct Item(Vec4);
-
-impl Item {
-    fn index(&self) -> u32 {
-        self.0.w.to_bits()
-    }
-}
 
 /// What a parent has to know of a leaf or a node.
 struct Summary {
@@ -34,8 +23,12 @@ pub fn build(points: &[Vec3]) -> KdTree {
     let item = |(p, index): (&Vec3, u32)| Item((*p + Vec3::ZERO).extend(f32::from_bits(index)));
     let mut items: Vec<_> = points.par_iter().zip(0..u32::MAX).map(item).collect();
     split(&mut items);
-    let leaves = items.par_chunks(LEAF).map(leaf).collect();
-    let mut summaries: Vec<_> = items.par_chunks(LEAF).map(summary).collect();
+    let (mut leaves, mut summaries) = (Vec::new(), Vec::new());
+    let of_leaf = |items: &[Item]| (leaf(items), summary(items));
+    items
+        .par_chunks(LEAF)
+        .map(of_leaf)
+        .unzip_into_vecs(&mut leaves, &mut summaries);
     let (mut nodes, mut first_indices, mut levels) = (Vec::new(), Vec::new(), Vec::new());
     while !summaries.is_empty() {
         let start = nodes.len();
@@ -67,9 +60,9 @@ fn split(items: &mut [Item]) {
     }
     let left = items.len().div_ceil(LEAF).next_power_of_two() / 2 * LEAF;
     match widest_axis(items) {
-        0 => select::<0>(items, left),
-        1 => select::<1>(items, left),
-        _ => select::<2>(items, left),
+        0 => select::least_first::<0>(items, left),
+        1 => select::least_first::<1>(items, left),
+        _ => select::least_first::<2>(items, left),
     }
     let (left, right) = items.split_at_mut(left);
     if right.len() > SEQUENTIAL {
@@ -78,20 +71,6 @@ fn split(items: &mut [Item]) {
         split(left);
         split(right);
     }
-}
-
-/// Puts the least items first, as many as `left`.
-fn select<const AXIS: usize>(items: &mut [Item], left: usize) {
-    items.select_nth_unstable_by(left, |a, b| {
-        let (x, y) = (a.0[AXIS], b.0[AXIS]);
-        if (x < y) | ((x == y) & (a.index() < b.index())) {
-            Ordering::Less
-        } else if a.index() == b.index() {
-            Ordering::Equal
-        } else {
-            Ordering::Greater
-        }
-    });
 }
 
 fn widest_axis(items: &[Item]) -> usize {
