@@ -67,8 +67,10 @@ fn weighted_layers_add_up_to_the_picture() {
 }
 
 /// A lamp between a floor and a ceiling: no two points that light goes between are close, so that every strategy has a bounded variance.
-const PLANES: &str = r#"LookAt 0 0.8 -2.6  0 1.1 0  0 1 0
-    Camera "perspective" "float fov" 60
+fn planes(camera: &str, floor: &str) -> String {
+    format!(
+        r#"LookAt 0 0.8 -2.6  0 1.1 0  0 1 0
+    Camera "perspective" "float fov" 60 {camera}
     Film "rgb" "integer xresolution" 24 "integer yresolution" 16
     PixelFilter "box"
     Integrator "bdpt" "integer maxdepth" 3
@@ -79,21 +81,41 @@ const PLANES: &str = r#"LookAt 0 0.8 -2.6  0 1.1 0  0 1 0
         Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 1.9 -1  1 1.9 -1  1 1.9 1  -1 1.9 1]
     AttributeEnd
     Material "diffuse" "rgb reflectance" [0.9 0.85 0.8]
-    Shape "trianglemesh" "integer indices" [0 2 1 0 3 2  4 5 6 4 6 7]
-        "point3 P" [-3 0 -3  3 0 -3  3 0 3  -3 0 3  -3 2.2 -3  3 2.2 -3  3 2.2 3  -3 2.2 3]"#;
+    Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 2.2 -3  3 2.2 -3  3 2.2 3  -3 2.2 3]
+    {floor}
+    Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point3 P" [-3 0 -3  3 0 -3  3 0 3  -3 0 3]"#
+    )
+}
 
 #[test]
 fn every_strategy_alone_finds_the_light_of_its_path_length() {
-    const EDGES: u32 = 4;
+    each_alone(&planes("", ""), 4);
+}
+
+/// Through a lens, over a floor that shines and whose normals were bent.
+#[test]
+fn every_strategy_alone_finds_glossy_light_through_a_lens() {
+    let scene = planes(
+        r#""float lensradius" 0.05 "float focaldistance" 2"#,
+        r#"Texture "waves" "float" "fbm" "integer octaves" 1 "float roughness" 0.5
+        Texture "low" "float" "scale" "texture tex" "waves" "float scale" 0.05
+        Material "conductor" "rgb reflectance" [0.9 0.8 0.7] "float roughness" 0.5 "texture displacement" "low""#,
+    );
+    each_alone(&scene, 3);
+}
+
+fn each_alone(scene: &str, most_edges: u32) {
     const SPP: u32 = 512;
-    let built = Built::new(parse(PLANES), Backend::default(), ColorMode::Rgb);
+    let built = Built::new(parse(scene), Backend::default(), ColorMode::Rgb);
     let runs = |first_seed: u64| {
         let seeds = first_seed..first_seed + FEWEST_RUNS as u64;
-        seeds.map(|seed| render(&built, EDGES, SPP, seed).1).collect::<Vec<_>>()
+        seeds
+            .map(|seed| render(&built, most_edges, SPP, seed).1)
+            .collect::<Vec<_>>()
     };
     let [alone, together] = [1, 101].map(runs);
     let reduced = |picture: &[f32]| blocks(picture, 24, [8, 8]);
-    for edges in 2..=EDGES {
+    for edges in 2..=most_edges {
         let reference = together.iter().map(|layers| {
             let mut sum = vec![0.0; 24 * 16 * 3];
             for (layer, picture) in layers {
@@ -124,7 +146,7 @@ fn every_strategy_alone_finds_the_light_of_its_path_length() {
 
 #[test]
 fn only_all_strategies_can_be_told_apart() {
-    let built = Built::new(parse(PLANES), Backend::default(), ColorMode::Rgb);
+    let built = Built::new(parse(&planes("", "")), Backend::default(), ColorMode::Rgb);
     let view = built.view(0, &ViewOverrides::default());
     let pyramid = Pyramid::new(2).expect("a pyramid");
     for name in ["path", "kajiya", "lightpath"] {
