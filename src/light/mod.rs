@@ -163,6 +163,12 @@ impl Light {
         }
     }
 
+    /// Whether only [`Light::sample_le`] finds it: it shines along the normals of a surface, which a given point is on with no
+    /// probability.
+    pub fn is_along_normals(&self) -> bool {
+        matches!(self, Self::Area(light) if light.is_along_normals())
+    }
+
     /// Where and where to it emits, for a hierarchy over lights; `None` if it is infinitely far away.
     pub fn bounds(&self) -> Option<LightBounds> {
         match self {
