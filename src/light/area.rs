@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
+use super::coordinates::{Coordinates, sphere_uv};
 use super::emission::{sample_side, side_pdf};
 use super::emitter::{Emitter, EmitterShape, SamplePlace, SurfaceSample};
 use super::image::EmissionImage;
@@ -10,7 +11,7 @@ use super::moving::{MovingEmitter, sphere_shape};
 use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
 use crate::desc::AreaSpread;
 use crate::geometry::Sphere;
-use crate::math::{DMat3, DVec3, Vec2, Vec3};
+use crate::math::{DMat3, Vec2, Vec3};
 use crate::sampling::{AreaPdf, SolidAnglePdf};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 use crate::texture::{FloatTexture, TextureContext};
@@ -41,28 +42,6 @@ enum Radiance {
     Constant(CompiledSpectrum),
     /// By texture coordinates, times a factor.
     Image(Arc<EmissionImage>, f32),
-}
-
-/// Where texture coordinates of sampled points come from.
-#[derive(Clone, Copy, Debug)]
-pub enum Coordinates {
-    /// Those of a triangle's corners.
-    Corners([Vec2; 3]),
-    /// Longitude and latitude of a sphere that does not move, which this takes to its own space.
-    Sphere(DMat3),
-    /// Each sampled point knows its own.
-    Own,
-}
-
-impl Coordinates {
-    /// The longer side of what the surface shows of an image of `size`, in pixels.
-    fn extent_in(&self, size: [usize; 2]) -> f32 {
-        let size = Vec2::new(size[0] as f32, size[1] as f32);
-        match self {
-            Self::Corners([p, q, r]) => ((p.max(*q).max(*r) - p.min(*q).min(*r)) * size).max_element(),
-            Self::Sphere(_) | Self::Own => size.max_element(),
-        }
-    }
 }
 
 impl AreaLight {
@@ -421,12 +400,4 @@ impl AreaLight {
     pub(super) fn power(&self) -> f32 {
         self.geometric_factor() * self.luminance
     }
-}
-
-/// Texture coordinates of a point of a sphere, by its unit direction from the centre in object space.
-fn sphere_uv(outward: DVec3) -> Vec2 {
-    let turn = outward.y.atan2(outward.x) / std::f64::consts::TAU;
-    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-    let height = 1.0 - outward.z.clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
-    Vec2::new(turn as f32, height as f32)
 }

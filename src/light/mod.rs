@@ -3,6 +3,7 @@
 mod area;
 mod bounds;
 mod bvh;
+mod coordinates;
 mod delta;
 mod emission;
 mod emitter;
@@ -18,8 +19,9 @@ mod sampler;
 mod sky;
 mod spot;
 
-pub use area::{AreaLight, Coordinates};
+pub use area::AreaLight;
 pub use bounds::LightBounds;
+pub use coordinates::Coordinates;
 pub use delta::{DistantLight, PointLight};
 pub use emission::{EmissionDensity, EmissionOrigin, EmissionSample};
 pub use emitter::EmitterShape;
