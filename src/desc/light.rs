@@ -90,8 +90,19 @@ pub enum SpotFalloff {
     Linear,
 }
 
-/// What a shape emits: the same radiance in all directions, on the side its normal points to. Normalised as for [`LightDesc`]; the
-/// geometric factor of `power` is pi times the area, twice that if two-sided.
+/// Whereto a shape's light goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AreaSpread {
+    /// The same radiance in all directions.
+    #[default]
+    Diffuse,
+    /// Along the geometric normal only, as Mitsuba's `directionalarea`: what is said of radiance is the power that leaves a unit of
+    /// area. Only paths from lights find it.
+    Normal,
+}
+
+/// What a shape emits, on the side its normal points to. Normalised as for [`LightDesc`]; the geometric factor of `power` is the area,
+/// times pi if it emits in all directions, times two if it is two-sided.
 #[derive(Clone, Debug)]
 pub struct AreaLightDesc {
     /// The type in the `AreaLightSource` directive.
@@ -107,4 +118,6 @@ pub struct AreaLightDesc {
     pub power: Option<f32>,
     /// Whether both sides emit.
     pub two_sided: bool,
+    /// Whereto.
+    pub spread: AreaSpread,
 }

@@ -59,7 +59,7 @@ pub use kinds::{
     Entry, FloatRange, INTEGRATORS, LIGHTS, MATERIALS, MEDIA, Parameter, ParameterDefault, ParameterKind, SAMPLERS,
     TEXTURES,
 };
-pub use light::{AreaLightDesc, LightDesc, LightKind, SpotFalloff};
+pub use light::{AreaLightDesc, AreaSpread, LightDesc, LightKind, SpotFalloff};
 pub use material::{
     CoatDesc, ConductorDesc, DistributionDesc, HairColorDesc, HairDesc, MaterialDesc, MaterialKind, PlasticDesc,
     PrincipledDesc, ReliefDesc, RoughnessDesc, SpectrumDesc, SpectrumValue,

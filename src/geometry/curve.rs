@@ -6,8 +6,11 @@
 //! Here that is done in double precision, by one function for every backend, so that all see the same surface.
 
 mod bezier;
+mod facing;
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+pub use self::facing::FacingCurves;
 
 use super::shape::LineHits;
 use super::surface::LocalSurface;
@@ -217,7 +220,7 @@ impl CurveSet {
         let (segment, range) = self.part(primitive);
         let points = segment.points.map(Vec3::as_dvec3);
         let frame = RayFrame::new(o, d, points[3] - points[0]);
-        // Where a backend saw a hit through an instance's rounded transform: the nearest point of the axis.
+        // Where a backend saw a hit by its own test, or through an instance's rounded transform: the nearest point of the axis.
         let hit = found.copied().unwrap_or_else(|| nearest_to_ray(segment, range, &frame));
         let dpdu = match bezier::derivative(&points, hit.uv.x) {
             DVec3::ZERO => points[3] - points[0],
@@ -349,15 +352,20 @@ fn normal_at(segment: &CurveSegment, u: f64) -> DVec3 {
 fn nearest_to_ray(segment: &CurveSegment, [u0, u1]: [f64; 2], frame: &RayFrame) -> CurveHit {
     const STEPS: u32 = 16;
     let points = segment.points.map(|p| frame.point(p.as_dvec3()));
-    let at = |i: u32| {
-        let u = u0 + (u1 - u0) * f64::from(i) / f64::from(STEPS);
-        (u, bezier::point(&points, u))
+    let nearest = |[u0, u1]: [f64; 2]| {
+        let at = |i: u32| {
+            let u = u0 + (u1 - u0) * f64::from(i) / f64::from(STEPS);
+            (u, bezier::point(&points, u))
+        };
+        let distance = |p: &(f64, DVec3)| p.1.truncate().length_squared();
+        let steps = (0..=STEPS).map(at);
+        steps
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or((u0, points[0]))
     };
-    let distance = |p: &(f64, DVec3)| p.1.truncate().length_squared();
-    let (u, axis) = (0..=STEPS)
-        .map(at)
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or((u0, points[0]));
+    let (about, _) = nearest([u0, u1]);
+    let step = (u1 - u0) / f64::from(STEPS);
+    let (u, axis) = nearest([(about - step).max(u0), (about + step).min(u1)]);
     let along = bezier::derivative(&points, u);
     let side = -along.x * axis.y + axis.x * along.y;
     CurveHit {

@@ -16,7 +16,7 @@ mod tube;
 mod world;
 
 pub use cone::RayCone;
-pub use curve::{CurveKind, CurveSegment, CurveSet};
+pub use curve::{CurveKind, CurveSegment, CurveSet, FacingCurves};
 pub use mesh::{MeshError, TriangleMesh};
 pub use packet::{HitPacket, LANES, Ray, RayPacket, RayQueue};
 pub use patch::{Patch, PatchHit};

@@ -23,6 +23,9 @@ pub struct TubePiece {
     /// Unit tangents of the curve at the ends, where it goes on smoothly: then the piece ends in the planes across them, and normals are
     /// those of the curve. `None` for a straight piece, which ends with its balls.
     pub tangents: Option<[Vec3; 2]>,
+    /// Whether another straight piece ends where this one starts: then the ball there is that one's, as in Embree, so that coordinates
+    /// around it do not depend on who is asked first.
+    pub is_joined: bool,
 }
 
 /// Pieces of tubes; each is a primitive.
@@ -44,6 +47,8 @@ struct Hull {
     /// The square of the length of the axis less that of the taper: not positive if one ball holds the other.
     slant2: f64,
     tangents: Option<[DVec3; 2]>,
+    /// The first end whose ball is tested.
+    first_ball: usize,
 }
 
 /// Where a line enters a piece.
@@ -65,6 +70,7 @@ impl Hull {
             taper,
             slant2: axis.length_squared() - taper * taper,
             tangents: piece.tangents.map(|tangents| tangents.map(Vec3::as_dvec3)),
+            first_ball: usize::from(piece.is_joined),
         }
     }
 
@@ -83,9 +89,10 @@ impl Hull {
 
     /// The first place where the line `o + t d` comes in, `d` of unit length.
     fn entry(&self, o: DVec3, d: DVec3) -> Option<Entry> {
-        let caps = [0, 1].map(|end| self.entry_of_ball(o, d, end));
+        // What is seen of a ball at a joint is beyond the end of the piece before: all else is inside that.
+        let balls = (self.first_ball..2).map(|end| self.entry_of_ball(o, d, end));
         let [first, second] = self.entries_of_cone(o, d);
-        let candidates = caps.into_iter().chain([first, second]).flatten();
+        let candidates = balls.chain([first, second]).flatten();
         candidates.min_by(|a, b| a.t.total_cmp(&b.t))
     }
 

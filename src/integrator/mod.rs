@@ -56,6 +56,7 @@ use crate::desc::{
     SppmDesc, Strategy, Terms,
 };
 use crate::film::Film;
+use crate::light::Light;
 use crate::material::Material;
 use crate::scene::{Scene, View};
 use photon::Stand;
@@ -253,6 +254,13 @@ impl Integrator {
 
     /// Light of `scene` that it cannot find, and which integrators can, for people; `None` if it finds all.
     pub fn blind_spot(&self, scene: &Scene) -> Option<String> {
+        let from_eye = matches!(self, Self::Path(_) | Self::Kajiya(_));
+        if from_eye && scene.lights().iter().any(Light::is_along_normals) {
+            return Some(format!(
+                "`{}` cannot find light that leaves a surface along its normals only: `bdpt`, `lightpath`, `photon` and `sppm` do",
+                self.name()
+            ));
+        }
         let lights = scene.lights().iter().filter(|light| light.is_delta()).count();
         if lights == 0 || !scene.materials().iter().any(Material::may_have_delta) {
             return None;

@@ -3,18 +3,20 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
+use super::coordinates::{Coordinates, sphere_uv};
 use super::emission::{sample_side, side_pdf};
 use super::emitter::{Emitter, EmitterShape, SamplePlace, SurfaceSample};
 use super::image::EmissionImage;
 use super::moving::{MovingEmitter, sphere_shape};
 use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
+use crate::desc::AreaSpread;
 use crate::geometry::Sphere;
-use crate::math::{DMat3, DVec3, Vec2, Vec3};
+use crate::math::{DMat3, Vec2, Vec3};
 use crate::sampling::{AreaPdf, SolidAnglePdf};
 use crate::spectrum::{CompiledSpectrum, SampledSpectrum, Wavelengths};
 use crate::texture::{FloatTexture, TextureContext};
 
-/// A surface that emits the same radiance in every direction of the side of its geometric normal, or of both.
+/// A surface that emits on the side of its geometric normal, or on both: the same radiance in every direction, or along the normal only.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// At time 0 if it moves.
@@ -23,6 +25,8 @@ pub struct AreaLight {
     motion: Option<Arc<MovingEmitter>>,
     radiance: Radiance,
     two_sided: bool,
+    /// With [`AreaSpread::Normal`], `radiance` is what leaves a unit of area.
+    spread: AreaSpread,
     /// How much of the surface there is: rays pass it with the probability 1 - alpha.
     alpha: FloatTexture,
     /// If anything depends on them.
@@ -38,28 +42,6 @@ enum Radiance {
     Constant(CompiledSpectrum),
     /// By texture coordinates, times a factor.
     Image(Arc<EmissionImage>, f32),
-}
-
-/// Where texture coordinates of sampled points come from.
-#[derive(Clone, Copy, Debug)]
-pub enum Coordinates {
-    /// Those of a triangle's corners.
-    Corners([Vec2; 3]),
-    /// Longitude and latitude of a sphere that does not move, which this takes to its own space.
-    Sphere(DMat3),
-    /// Each sampled point knows its own.
-    Own,
-}
-
-impl Coordinates {
-    /// The longer side of what the surface shows of an image of `size`, in pixels.
-    fn extent_in(&self, size: [usize; 2]) -> f32 {
-        let size = Vec2::new(size[0] as f32, size[1] as f32);
-        match self {
-            Self::Corners([p, q, r]) => ((p.max(*q).max(*r) - p.min(*q).min(*r)) * size).max_element(),
-            Self::Sphere(_) | Self::Own => size.max_element(),
-        }
-    }
 }
 
 impl AreaLight {
@@ -83,6 +65,7 @@ impl AreaLight {
             luminance: radiance.photometric_luminance(),
             radiance: Radiance::Constant(radiance),
             two_sided,
+            spread: AreaSpread::Diffuse,
             alpha: FloatTexture::Constant(1.0),
             coordinates: None,
         }
@@ -130,6 +113,12 @@ impl AreaLight {
         .measured()
     }
 
+    /// With its light going where `spread` says.
+    #[must_use]
+    pub fn with_spread(self, spread: AreaSpread) -> Self {
+        Self { spread, ..self }
+    }
+
     /// This light, `factor` times as bright.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
@@ -141,6 +130,20 @@ impl AreaLight {
             luminance: self.luminance * factor,
             ..self
         }
+    }
+
+    /// Whether only light that it sends out is found: no direction towards it brings any.
+    pub(super) fn is_along_normals(&self) -> bool {
+        self.spread == AreaSpread::Normal
+    }
+
+    /// Its power over that of a unit of its radiance.
+    pub fn geometric_factor(&self) -> f32 {
+        let directions = match self.spread {
+            AreaSpread::Diffuse => PI,
+            AreaSpread::Normal => 1.0,
+        };
+        self.sides() * directions * self.area
     }
 
     /// Whether no ray meets it.
@@ -158,12 +161,17 @@ impl AreaLight {
         if self.two_sided { 2.0 } else { 1.0 }
     }
 
-    /// Radiance emitted in direction `w` where the geometric normal is `ng` and the texture coordinates are `uv`.
+    /// Radiance emitted in direction `w`, but along the normal only, where the geometric normal is `ng` and the texture coordinates are `uv`.
     #[inline]
     pub fn le(&self, ng: Vec3, uv: Vec2, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {
-        if !self.two_sided && ng.dot(w) <= 0.0 {
+        if self.is_along_normals() || (!self.two_sided && ng.dot(w) <= 0.0) {
             return SampledSpectrum::ZERO;
         }
+        self.radiance_at(uv, lambda)
+    }
+
+    #[inline]
+    fn radiance_at(&self, uv: Vec2, lambda: &Wavelengths) -> SampledSpectrum {
         match &self.radiance {
             Radiance::Constant(radiance) => radiance.sample(lambda),
             Radiance::Image(image, scale) => image.sample_bilinear(uv, lambda) * *scale,
@@ -225,7 +233,7 @@ impl AreaLight {
         })
     }
 
-    /// A point by area, and a direction by its cosine.
+    /// A point by area, and a direction by its cosine, or the normal.
     pub(super) fn sample_le(
         &self,
         time: f32,
@@ -234,6 +242,9 @@ impl AreaLight {
         lambda: &Wavelengths,
     ) -> Option<EmissionSample> {
         let sample = self.at(time, |emitter| emitter.sample_area(u_position))?;
+        if self.is_along_normals() {
+            return self.sample_normal(&sample, time, u_direction, lambda);
+        }
         let (p, ng) = (sample.p, sample.ng);
         let direction = sample_side(ng, self.two_sided, u_direction);
         let le = self.le_of(&sample, time, direction, lambda);
@@ -247,6 +258,33 @@ impl AreaLight {
             direction,
             density: self.density(sample.pdf, ng, direction),
             cos_theta: ng.dot(direction).abs(),
+        };
+        emission.checked()
+    }
+
+    /// A ray along the normal at a sampled point; of two sides either, by the first number.
+    fn sample_normal(
+        &self,
+        sample: &SurfaceSample<AreaPdf>,
+        time: f32,
+        u: Vec2,
+        lambda: &Wavelengths,
+    ) -> Option<EmissionSample> {
+        let (p, ng) = (sample.p, sample.ng);
+        let uv = self.uv(sample.at, time);
+        let emission = EmissionSample {
+            le: self.radiance_at(uv, lambda) * (self.alpha_at(p, ng, uv) * self.sides()),
+            origin: EmissionOrigin::Surface {
+                p,
+                error: sample.error,
+                ng,
+            },
+            direction: if self.two_sided && u.x >= 0.5 { -ng } else { ng },
+            density: EmissionDensity {
+                position: LightDensity::Continuous(sample.pdf),
+                direction: LightDensity::Delta,
+            },
+            cos_theta: 1.0,
         };
         emission.checked()
     }
@@ -360,14 +398,6 @@ impl AreaLight {
 
     /// At time 0 if it moves.
     pub(super) fn power(&self) -> f32 {
-        self.sides() * PI * self.area * self.luminance
+        self.geometric_factor() * self.luminance
     }
-}
-
-/// Texture coordinates of a point of a sphere, by its unit direction from the centre in object space.
-fn sphere_uv(outward: DVec3) -> Vec2 {
-    let turn = outward.y.atan2(outward.x) / std::f64::consts::TAU;
-    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-    let height = 1.0 - outward.z.clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
-    Vec2::new(turn as f32, height as f32)
 }

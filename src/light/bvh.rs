@@ -45,7 +45,7 @@ const LEAST_SHARE: f32 = 1.0 / 65536.0;
 type BoundedLight = (LightId, LightBounds);
 
 impl LightBvh {
-    /// Over all `lights` that emit; `scene_bounds` say how much of an infinite light arrives.
+    /// Over all `lights` that shine on given points; `scene_bounds` say how much of an infinite light arrives.
     pub fn new(lights: &[Light], scene_bounds: &Bounds3) -> Self {
         let mut tree = Self {
             ways: vec![ABSENT; lights.len()],
@@ -53,7 +53,7 @@ impl LightBvh {
         };
         let mut bounded = Vec::new();
         for (i, light) in lights.iter().enumerate() {
-            if light.power(scene_bounds) <= 0.0 {
+            if light.power(scene_bounds) <= 0.0 || light.is_along_normals() {
                 continue;
             }
             match light.bounds() {

@@ -3,6 +3,7 @@
 mod area;
 mod bounds;
 mod bvh;
+mod coordinates;
 mod delta;
 mod emission;
 mod emitter;
@@ -18,8 +19,9 @@ mod sampler;
 mod sky;
 mod spot;
 
-pub use area::{AreaLight, Coordinates};
+pub use area::AreaLight;
 pub use bounds::LightBounds;
+pub use coordinates::Coordinates;
 pub use delta::{DistantLight, PointLight};
 pub use emission::{EmissionDensity, EmissionOrigin, EmissionSample};
 pub use emitter::EmitterShape;
@@ -161,6 +163,12 @@ impl Light {
             Self::Environment(_) => false,
             Self::Point(_) | Self::Spot(_) | Self::Goniometric(_) | Self::Projection(_) | Self::Distant(_) => true,
         }
+    }
+
+    /// Whether only [`Light::sample_le`] finds it: it shines along the normals of a surface, which a given point is on with no
+    /// probability.
+    pub fn is_along_normals(&self) -> bool {
+        matches!(self, Self::Area(light) if light.is_along_normals())
     }
 
     /// Where and where to it emits, for a hierarchy over lights; `None` if it is infinitely far away.

@@ -215,6 +215,7 @@ impl LightBuilder {
         let joins = image.is_none() && desc.power.is_none() && motion.is_none();
         let add = |lights: &mut Self, primitive| {
             let (light, coordinates) = emitter(geometry, primitive, motion, &radiance, desc.two_sided)?;
+            let light = light.with_spread(desc.spread);
             let light = match &image {
                 Some(image) => light.with_image(Arc::clone(image), coordinates),
                 None => light,
@@ -225,9 +226,7 @@ impl LightBuilder {
                 texture => light.with_alpha_texture(texture.clone(), coordinates),
             };
             // As in pbrt-v4 the power is that of each light: of one triangle.
-            let power = desc
-                .power
-                .map_or(1.0, |p| p / (light.sides() * PI * light.area() * mean));
+            let power = desc.power.map_or(1.0, |p| p / (light.geometric_factor() * mean));
             Some(lights.push(Light::Area(light.scaled(desc.scale * power))))
         };
         let mut lights = Vec::with_capacity(geometry.primitive_count());
@@ -236,7 +235,9 @@ impl LightBuilder {
             match (parallelogram(geometry, first), alpha) {
                 (Some(shape), FloatTexture::Constant(alpha)) if joins => {
                     let light = AreaLight::new(shape, radiance.clone(), desc.two_sided);
-                    let light = light.map(|light| light.with_alpha(*alpha).scaled(desc.scale));
+                    let adapted =
+                        |light: AreaLight| light.with_spread(desc.spread).with_alpha(*alpha).scaled(desc.scale);
+                    let light = light.map(adapted);
                     let id = light.map(|light| self.push(Light::Area(light)));
                     lights.extend([id; 2]);
                 }

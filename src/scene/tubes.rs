@@ -16,12 +16,13 @@ pub(super) fn tubes(desc: &TubesDesc, transform: &DAffine3) -> Option<TubeSet> {
         let along = |segment: usize, fraction: f64| ((segment as f64 + fraction) / segments as f64) as f32;
         match desc.basis {
             TubeBasis::Linear => {
-                for (ends, radii) in points.windows(2).zip(radii.windows(2)) {
+                for (i, (ends, radii)) in points.windows(2).zip(radii.windows(2)).enumerate() {
                     pieces.push(TubePiece {
                         ends: [ends[0], ends[1]],
                         radii: [radii[0], radii[1]],
                         along: [0.0, 1.0].map(|fraction| along(segment, fraction)),
                         tangents: None,
+                        is_joined: i > 0,
                     });
                     segment += 1;
                 }
@@ -107,6 +108,7 @@ impl Segment {
                 radii: [ra as f32, rb as f32],
                 along: u.map(&along),
                 tangents: Some(u.map(|u| self.tangent(u).as_vec3())),
+                is_joined: false,
             }
         })
     }

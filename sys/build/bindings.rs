@@ -30,6 +30,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcSetGeometryBuildQuality",
     "rtcSetSharedGeometryBuffer",
     "rtcSetNewGeometryBuffer",
+    "rtcSetGeometryTessellationRate",
     "rtcSetGeometryUserData",
     "rtcSetGeometryUserPrimitiveCount",
     "rtcSetGeometryBoundsFunction",

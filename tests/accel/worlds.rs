@@ -265,6 +265,7 @@ pub fn tubes(rng: &mut Rng, count: usize) -> Shape {
             tangents: i
                 .is_multiple_of(2)
                 .then(|| [(axis + 0.1 * rng.direction()).normalize(), axis]),
+            is_joined: false,
         }
     };
     Shape::Tubes(TubeSet::new((0..count).map(piece).collect(), DAffine3::IDENTITY).unwrap())

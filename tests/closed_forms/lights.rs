@@ -323,3 +323,35 @@ fn an_ellipsoid_lights_by_what_is_seen_of_it() {
         sum
     });
 }
+
+/// Light along the normals: of a rectangle a beam of its own cross-section, of a sphere what a point of the same flux gives.
+#[test]
+fn light_along_normals_is_a_beam() {
+    let light = |shape: &str, parameters: &str| {
+        format!(
+            "AttributeBegin\nAreaLightSource \"diffuse\" \"string spread\" \"normal\" {parameters}\n\
+             Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n{shape}AttributeEnd"
+        )
+    };
+    let integrated_by = |name: &str| options(1).replace("\"path\"", &format!("\"{name}\""));
+    // Facing down: over blocks of the picture from -1 to 2 and from -2 to 0.
+    let square = quad([-1.0, -2.0, 3.0], [0.0, 2.0, 0.0], [3.0, 0.0, 0.0]);
+    let in_beam = |p: DVec3| f64::from(p.x > -1.0 && p.x < 2.0 && p.y > -2.0 && p.y < 0.0);
+    for name in ["bdpt", "lightpath"] {
+        let options = integrated_by(name);
+        let beam = light(&square, "\"rgb L\" [3 3 3]");
+        check_with(&format!("beam by {name}"), 1024, &options, &beam, |p| 3.0 * in_beam(p));
+        // The power of each of two triangles of 3 units of area.
+        let beam = light(&square, "\"float power\" 6 \"bool twosided\" true");
+        check_with(&format!("beam by power, {name}"), 1024, &options, &beam, in_beam);
+        let center = DVec3::new(0.5, -0.5, 2.5);
+        let sphere = "Translate 0.5 -0.5 2.5 Shape \"sphere\" \"float radius\" 0.2\n";
+        let rays = light(sphere, "\"rgb L\" [100 100 100]");
+        check_with(&format!("sphere along normals by {name}"), 4096, &options, &rays, |p| {
+            4.0 * irradiance_of_point(p, center)
+        });
+    }
+    // A given point is on none of these normals: light samples and rays that meet the light find nothing.
+    let path = light(&square, "\"rgb L\" [3 3 3]");
+    check_with("beam by path", 16, &options(1), &path, |_| 0.0);
+}

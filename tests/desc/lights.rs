@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lucerna::desc::{ColorSpace, LightKind, SceneDesc, SpotFalloff, color_space_of, load};
+use lucerna::desc::{AreaSpread, ColorSpace, LightKind, SceneDesc, SpotFalloff, color_space_of, load};
 use lucerna::error::Error;
 use lucerna::image_io::{Image, ImageMetadata, PendingOutput, Window};
 
@@ -110,6 +110,15 @@ fn images_are_read_and_counted_in_the_hash() {
     );
     let area = scene.shapes[0].area_light.as_ref().expect("a light");
     assert!(area.two_sided && area.image.as_ref().is_some_and(|image| image.width() == 5));
+    assert_eq!(area.spread, AreaSpread::Diffuse);
+    let beam = "AreaLightSource \"diffuse\" \"string spread\" \"normal\" Shape \"disk\"";
+    let beam = read(&directory, beam).unwrap_or_else(|e| panic!("{e}"));
+    assert!(
+        beam.shapes[0]
+            .area_light
+            .as_ref()
+            .is_some_and(|light| light.spread == AreaSpread::Normal)
+    );
 
     let window = Window::of_size(5, 4);
     write(
@@ -135,6 +144,10 @@ fn each_bad_value_has_its_error() {
             "more than 0 and at most 180",
         ),
         ("LightSource \"spot\" \"float conedeltaangle\" @-1", "0 or more"),
+        (
+            "AreaLightSource \"diffuse\" \"string spread\" @\"wide\"",
+            "one of diffuse, normal",
+        ),
         (
             "LightSource \"spot\" \"float conedeltaangle\" @31",
             "no more than `coneangle`, 30",

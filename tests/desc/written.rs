@@ -148,6 +148,7 @@ fn scenes_of_mitsuba_are_the_same_again() {
     for bsdf in [
         r#"<bsdf type="diffuse"/>"#,
         r#"<bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>"#,
+        r#"<emitter type="directionalarea"/>"#,
         r#"<bsdf type="roughplastic"><float name="alpha" value=".3"/><boolean name="nonlinear" value="true"/></bsdf>"#,
         r#"<bsdf type="conductor"/>"#,
         r#"<bsdf type="roughconductor"><string name="material" value="Au"/><string name="distribution" value="ggx"/></bsdf>"#,

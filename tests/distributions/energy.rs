@@ -3,7 +3,8 @@
 
 use glam::{DVec3, Vec3};
 use lucerna::material::{
-    Body, Bsdf, Conductor, Dielectric, Diffuse, Interlayer, Layered, Lobe, Microfacets, ThinDielectric, TransportMode,
+    Body, Bsdf, Conductor, Dielectric, Diffuse, Interlayer, Layered, Lobe, Microfacets, Plastic, PlasticParameters,
+    PlasticTables, ThinDielectric, Tinted, TransportMode, Untinted,
 };
 use lucerna::math::Frame;
 use lucerna::spectrum::SampledSpectrum;
@@ -184,10 +185,70 @@ fn the_same_directions_give_the_same_value() {
 /// No kind reflects and transmits more than there is.
 #[test]
 fn nothing_gains_energy() {
-    for kind in KINDS {
+    for kind in KINDS.into_iter().filter(|kind| kind.keeps_energy()) {
         for (theta, phi) in DIRECTIONS {
             let albedo = kind.albedo(direction(theta, phi), MODE);
             assert!(albedo <= 1.003, "{kind:?} from {theta}: {albedo}");
+        }
+    }
+}
+
+/// A white base under a smooth boundary loses nothing: neither what the boundary reflects, nor what comes out again.
+#[test]
+fn white_plastic_keeps_its_energy() {
+    let tables: &'static PlasticTables = Box::leak(Box::new(PlasticTables::new(1.5, None)));
+    let parameters = PlasticParameters {
+        diffuse: SampledSpectrum::ONE,
+        specular: SampledSpectrum::ONE,
+        nonlinear: true,
+    };
+    let bsdf = upright(Lobe::Plastic(Plastic::new(parameters, tables)));
+    let means = Means {
+        significance: 0.01 / DIRECTIONS.len() as f64,
+        slack: 1e-3,
+    };
+    for (theta, phi) in DIRECTIONS {
+        let samples = 16_384 * effort(16);
+        let run = |seed| {
+            let (smooth, rough) = smooth_and_rough(&bsdf, direction(theta, phi), seed, samples);
+            vec![smooth + rough]
+        };
+        let report = means.against_exact(&(1..=FEWEST_RUNS).map(run).collect::<Vec<_>>(), &[1.0]);
+        report.assert_agrees(&format!("white plastic from {theta}"));
+        report.assert_power(&format!("white plastic from {theta}"), 0.01, 0.01);
+    }
+}
+
+/// Smooth lobes with factors: each times what the lobe alone reflects, or transmits.
+#[test]
+fn factors_of_smooth_lobes_are_those_of_what_they_send_on() {
+    let splat = SampledSpectrum::splat;
+    let glass = Dielectric::new(1.5, None);
+    let sheet = ThinDielectric::new(splat(1.5));
+    let pairs = [
+        (Lobe::Conductor(mirror(None)), Untinted::Conductor(mirror(None))),
+        (Lobe::Dielectric(glass), Untinted::Dielectric(glass)),
+        (Lobe::ThinDielectric(sheet), Untinted::ThinDielectric(sheet)),
+    ];
+    let mut random = Random::new(11);
+    for (plain, lobe) in pairs {
+        let tinted = upright(Lobe::Tinted(Tinted::new(lobe, splat(0.25), splat(0.5))));
+        let plain = upright(plain);
+        assert!(tinted.is_delta());
+        for _ in 0..200 {
+            let u = random.unit4();
+            let (theta, phi) = DIRECTIONS[(u[3] * DIRECTIONS.len() as f32) as usize];
+            let wo = direction(theta, phi).as_vec3();
+            let samples = [&plain, &tinted].map(|bsdf| bsdf.sample_f(wo, u[2], first_two(u), MODE));
+            let [Some(plain), Some(tinted)] = samples else {
+                panic!("smooth lobes send all on");
+            };
+            let factor = if plain.wi.z * wo.z > 0.0 { 0.25 } else { 0.5 };
+            assert_eq!(tinted.value, plain.value * factor);
+            assert_eq!(
+                (tinted.wi, tinted.density, tinted.eta),
+                (plain.wi, plain.density, plain.eta)
+            );
         }
     }
 }

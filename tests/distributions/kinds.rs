@@ -7,8 +7,9 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 use lucerna::material::Distribution::{self, Beckmann, Ggx};
 use lucerna::material::{
-    Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Lobe, Microfacets, OrenNayar, Principled,
-    PrincipledParameters, PrincipledTables, TransportMode,
+    Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, Lobe, Microfacets, OrenNayar, Plastic,
+    PlasticParameters, PlasticTables, Principled, PrincipledParameters, PrincipledTables, Tinted, TransportMode,
+    Untinted,
 };
 use lucerna::math::Frame;
 use lucerna::spectrum::SampledSpectrum;
@@ -29,7 +30,18 @@ pub enum Kind {
     /// Index and slopes.
     Glass(Distribution, f32, f32, f32),
     Principled(&'static PrincipledParameters),
+    /// The same parameters in Mitsuba's composition, which may gain energy.
+    Additive(&'static PrincipledParameters),
+    /// A base under a rough boundary, and whether its colour counts at each bounce under it.
+    Plastic(bool),
+    /// Slopes of a metal, with a factor.
+    TintedMetal(f32),
+    /// Slopes of glass of index 1.5, with factors.
+    TintedGlass(f32),
 }
+
+/// Factors of what tinted lobes reflect and transmit.
+const TINTS: [f32; 2] = [0.6, 0.8];
 
 const METAL_N: f64 = 0.2;
 const METAL_K: f64 = 3.9;
@@ -44,6 +56,14 @@ impl fmt::Debug for Kind {
             Self::Metal(distribution, x, y) => write!(f, "metal {distribution:?} {x} {y}"),
             Self::Glass(distribution, eta, x, y) => write!(f, "glass {eta} {distribution:?} {x} {y}"),
             Self::Principled(p) => write!(f, "principled, metallic {} spec_trans {}", p.metallic, p.spec_trans),
+            Self::Additive(p) => write!(
+                f,
+                "additive, metallic {} spec_trans {} flatness {}",
+                p.metallic, p.spec_trans, p.flatness
+            ),
+            Self::Plastic(nonlinear) => write!(f, "plastic, nonlinear {nonlinear}"),
+            Self::TintedMetal(alpha) => write!(f, "tinted metal {alpha}"),
+            Self::TintedGlass(alpha) => write!(f, "tinted glass {alpha}"),
         }
     }
 }
@@ -74,6 +94,29 @@ impl Kind {
                 let tables = TABLES.get_or_init(|| PrincipledTables::new(parameters.eta));
                 Lobe::Principled(Principled::new(*parameters, tables))
             }
+            Self::Additive(parameters) => Lobe::Burley(Burley::new(*parameters, parameters.base.mean())),
+            Self::Plastic(nonlinear) => {
+                static TABLES: OnceLock<PlasticTables> = OnceLock::new();
+                let tables = TABLES.get_or_init(|| PlasticTables::new(1.49, Microfacets::new(Beckmann, 0.3, 0.3)));
+                let parameters = PlasticParameters {
+                    diffuse: splat(ALBEDO),
+                    specular: splat(0.9),
+                    nonlinear,
+                };
+                Lobe::Plastic(Plastic::new(parameters, tables))
+            }
+            Self::TintedMetal(alpha) => {
+                let metal = Conductor::new(
+                    splat(METAL_N as f32),
+                    splat(METAL_K as f32),
+                    Microfacets::new(Ggx, alpha, alpha),
+                );
+                tinted(Untinted::Conductor(metal))
+            }
+            Self::TintedGlass(alpha) => {
+                let glass = Dielectric::new(1.5, Microfacets::new(Ggx, alpha, alpha));
+                tinted(Untinted::Dielectric(glass))
+            }
         };
         Bsdf::new(Frame::from_normal_tangent(ns, dpdu), lobe)
     }
@@ -82,9 +125,15 @@ impl Kind {
     pub fn eta(self) -> f32 {
         match self {
             Self::Glass(_, eta, ..) => eta,
-            Self::Principled(p) => p.eta,
+            Self::TintedGlass(_) => 1.5,
+            Self::Principled(p) | Self::Additive(p) => p.eta,
             _ => 1.0,
         }
+    }
+
+    /// Whether its model leaves no more light than came.
+    pub fn keeps_energy(self) -> bool {
+        !matches!(self, Self::Additive(_))
     }
 
     /// The cosine-weighted integral of f over all wi for `wo` (of either side), by the model.
@@ -106,22 +155,42 @@ impl Kind {
                 slopes(distribution, x, y).reflected(up, fresnel)
             }
             Self::Glass(distribution, eta, x, y) => {
-                let eta = f64::from(if wo.z > 0.0 { eta } else { 1.0 / eta });
-                let slopes = slopes(distribution, x, y);
-                let scale = if mode == TransportMode::Radiance {
-                    1.0 / (eta * eta)
-                } else {
-                    1.0
-                };
-                let fresnel = |cos| dielectric_reflectance(cos, eta);
-                slopes.reflected(up, fresnel) + scale * slopes.transmitted(up, eta)
+                let [reflected, transmitted] = of_glass(&slopes(distribution, x, y), wo, eta.into(), mode);
+                reflected + transmitted
             }
-            Self::Principled(_) => integral(&self.bsdf(), wo, mode),
+            Self::TintedMetal(alpha) => f64::from(TINTS[0]) * Self::Metal(Ggx, alpha, alpha).albedo(wo, mode),
+            Self::TintedGlass(alpha) => {
+                let shares = of_glass(&slopes(Ggx, alpha, alpha), wo, 1.5, mode);
+                shares
+                    .iter()
+                    .zip(TINTS)
+                    .map(|(share, tint)| share * f64::from(tint))
+                    .sum()
+            }
+            Self::Principled(_) | Self::Additive(_) | Self::Plastic(_) => integral(&self.bsdf(), wo, mode),
         }
     }
 }
 
-pub const KINDS: [Kind; 22] = [
+fn tinted(lobe: Untinted) -> Lobe<'static> {
+    let [reflectance, transmittance] = TINTS.map(SampledSpectrum::splat);
+    Lobe::Tinted(Tinted::new(lobe, reflectance, transmittance))
+}
+
+/// What rough glass reflects and what it transmits.
+fn of_glass(slopes: &Slopes, wo: DVec3, eta: f64, mode: TransportMode) -> [f64; 2] {
+    let up = DVec3::new(wo.x, wo.y, wo.z.abs());
+    let eta = if wo.z > 0.0 { eta } else { 1.0 / eta };
+    let scale = if mode == TransportMode::Radiance {
+        1.0 / (eta * eta)
+    } else {
+        1.0
+    };
+    let fresnel = |cos| dielectric_reflectance(cos, eta);
+    [slopes.reflected(up, fresnel), scale * slopes.transmitted(up, eta)]
+}
+
+pub const KINDS: [Kind; 31] = [
     Kind::Diffuse,
     Kind::OrenNayar(0.3),
     Kind::OrenNayar(1.0),
@@ -144,6 +213,15 @@ pub const KINDS: [Kind; 22] = [
     Kind::Principled(&METAL),
     Kind::Principled(&GLASS),
     Kind::Principled(&ALL),
+    Kind::Additive(&PLASTIC),
+    Kind::Additive(&FLAT),
+    Kind::Additive(&GLASS),
+    Kind::Additive(&ALL),
+    Kind::Plastic(false),
+    Kind::Plastic(true),
+    Kind::TintedMetal(0.3),
+    Kind::TintedGlass(0.2),
+    Kind::TintedGlass(0.6),
 ];
 
 const PLASTIC: PrincipledParameters = PrincipledParameters {
@@ -159,6 +237,10 @@ const PLASTIC: PrincipledParameters = PrincipledParameters {
     clearcoat: 0.0,
     clearcoat_gloss: 0.0,
     flatness: 0.0,
+};
+const FLAT: PrincipledParameters = PrincipledParameters {
+    flatness: 0.8,
+    ..PLASTIC
 };
 const METAL: PrincipledParameters = PrincipledParameters {
     metallic: 1.0,

@@ -51,3 +51,30 @@ fn every_light_is_what_path_finds() {
         assert_agree(&name, &ours, &reference, 0.01, power);
     }
 }
+
+/// Light along the normals of a surface, which no light sample finds, counts as a caustic: it is in both maps, once.
+#[test]
+fn light_along_normals_is_a_caustic() {
+    let beam = "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"string spread\" \"normal\"\n\
+                Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-5 4 -3  5 4 -3  5 3.5 3  -5 3.5 3] AttributeEnd";
+    let lamp = LAMPS[0].text("");
+    let text = scene(0).replace(&lamp, beam);
+    assert!(text.contains("spread"));
+    let depth = Some(3);
+    let built = Built::new(parse(&text), Backend::Bvh, MODES[0]);
+    let bdpt = Integrator::from_desc(&built.desc.integrator)
+        .named("bdpt")
+        .with_max_depth(depth);
+    let reference = runs(&built, bdpt, 256, 101, [8, 8]);
+    let two_pass = photon(depth, |p| {
+        p.global_photons = Some(10_000);
+        p.max_distance = Some(0.12);
+        p.passes = 8;
+        p.final_gather_samples = 4;
+    });
+    for (integrator, spp) in [(two_pass, 8), (sppm(depth, 8000, 0.12), 12)] {
+        let ours = runs(&built, integrator, spp, 1, [8, 8]);
+        let name = format!("beam by {}", integrator.name());
+        assert_agree(&name, &ours, &reference, 0.01, 0.25);
+    }
+}

@@ -144,6 +144,17 @@ def emitters():
     yield "spot", light(f'<emitter type="spot">{place}{rgb("intensity", "20, 16, 10")}<float name="cutoff_angle" value="22"/></emitter>')
     yield "spot-wide", light(f'<emitter type="spot">{place}{rgb("intensity", "20, 16, 10")}<float name="cutoff_angle" value="40"/><float name="beam_width" value="2"/></emitter>')
     yield "directional", light(f'<emitter type="directional"><vector name="direction" x="0.5" y="-1" z="-0.7"/>{rgb("irradiance", "2, 1.8, 1.5")}</emitter>')
+    # Only paths from lights find these.
+    along = lambda shape: scene(shape + '<shape type="sphere"><bsdf type="diffuse"/></shape>', light="",
+                                integrator='<integrator type="ptracer"><integer name="max_depth" value="5"/></integrator>')
+    above = '<transform name="to_world"><scale value="0.8"/><lookat origin="-1.5, 3, 2" target="0, 0, 0" up="0, 1, 0"/></transform>'
+    normal = f'<emitter type="directionalarea">{rgb("radiance", "3, 2.5, 2")}</emitter>'
+    for kind in ("rectangle", "disk"):
+        yield f"directionalarea-{kind}", along(f'<shape type="{kind}">{above}{normal}</shape>')
+    ball_ = '<shape type="sphere"><point name="center" x="-1.5" y="1.5" z="0.6"/><float name="radius" value="0.3"/>'
+    yield "directionalarea-sphere", along(ball_ + normal.replace("3, 2.5, 2", "30, 25, 20") + "</shape>")
+    yield "directionalarea-flipped", along(f'<shape type="sphere"><float name="radius" value="6"/><boolean name="flip_normals" value="true"/>{normal}</shape>')
+    yield "directionalarea-path", scene(f'<shape type="rectangle">{above}{normal}</shape><shape type="sphere"/>')
     yield "constant", light(SKY)
     yield "envmap", light('<emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>')
     yield "envmap-turned", light('<emitter type="envmap"><string name="filename" value="sky.exr"/><float name="scale" value="0.5"/><transform name="to_world"><rotate y="1" angle="70"/><rotate x="1" angle="20"/></transform></emitter>')

@@ -1,7 +1,8 @@
 //! Debian's Embree, version 3 or 4.
 //!
 //! A [`World`] becomes one Embree scene for each group and one for the root, which holds the geometries in world space and the
-//! instances. Meshes share the world's arrays; all else is user geometry, intersected in double precision by
+//! instances. Meshes share the world's arrays; flat and cylindrical curves are Embree's flat Bézier curves, in scenes of their own
+//! (`curves.rs`); all else is user geometry, intersected in double precision by
 //! [`Shape::line_hits`](crate::geometry::Shape::line_hits); only filtered geometry has a filter function.
 //!
 //! # Which call serves which kind of ray
@@ -35,6 +36,9 @@
 )]
 
 mod callbacks;
+#[cfg(test)]
+mod curve_tests;
+mod curves;
 mod device;
 #[cfg(test)]
 mod filter_tests;
@@ -53,9 +57,10 @@ use embree_sys as ffi;
 
 pub use self::widths::Entry;
 
+use self::curves::CurveLayer;
 use self::device::Device;
-use self::query::Query;
-use self::scene::Scenes;
+use self::query::{Query, STREAM_PACKETS};
+use self::scene::{Layer, Scenes};
 use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
 use crate::error::Result;
 use crate::geometry::{Geometry, GeometryId, HitPacket, InstanceId, LANES, RayPacket, Shape, World};
@@ -126,9 +131,9 @@ impl EmbreeScene {
         }
     }
 
-    /// The committed scene, for benchmarks that call Embree directly. It lives as long as `self`.
+    /// The committed scene of all but curves, for benchmarks that call Embree directly. It lives as long as `self`.
     pub fn raw_scene(&self) -> ffi::RTCScene {
-        self.built.scenes.root.raw()
+        self.built.scenes.main.root.raw()
     }
 
     /// The calls for rays of a kind.
@@ -140,14 +145,60 @@ impl EmbreeScene {
         })
     }
 
-    fn query<'a>(&'a self, calls: Calls, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
+    fn query<'a>(&'a self, layer: &'a Layer, calls: Calls, filter: Option<&'a dyn HitFilter>) -> Query<'a> {
         Query {
-            scene: &self.built.scenes.root,
+            scene: &layer.root,
             filter,
             first_instance: self.built.scenes.first_instance,
             coherent: calls.coherent,
         }
     }
+
+    /// What curves are met in front of the hits that there are.
+    fn intersect_curves(&self, curves: &CurveLayer, calls: Calls, rays: &[RayPacket], hits: &mut [HitPacket]) {
+        let query = self.query(&curves.layer, calls, None);
+        let mut found = [HitPacket::EMPTY; STREAM_PACKETS];
+        for (rays, hits) in rays.chunks(STREAM_PACKETS).zip(hits.chunks_mut(STREAM_PACKETS)) {
+            let (moved, by) = moved_back(curves, rays, |packet| &hits[packet].t);
+            let found = &mut found[..rays.len()];
+            query.intersect_by(calls.entry, &moved[..rays.len()], found, |hits| {
+                self.built.resolve(hits);
+            });
+            for ((hits, found), by) in hits.iter_mut().zip(found).zip(by) {
+                curves::merge(hits, found, &by);
+            }
+        }
+    }
+
+    /// Marks the rays that meet curves.
+    fn occlude_curves(&self, curves: &CurveLayer, calls: Calls, rays: &mut [RayPacket]) {
+        let query = self.query(&curves.layer, calls, None);
+        for rays in rays.chunks_mut(STREAM_PACKETS) {
+            let (mut moved, _) = moved_back(curves, rays, |packet| &rays[packet].tfar);
+            query.occluded_by(calls.entry, &mut moved[..rays.len()]);
+            for (rays, moved) in rays.iter_mut().zip(&moved) {
+                for lane in 0..LANES {
+                    if moved.tfar[lane] == f32::NEG_INFINITY {
+                        rays.tfar[lane] = f32::NEG_INFINITY;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Some packets of rays, as far back as curves need, that end at `ends`; and by how much.
+fn moved_back<'a>(
+    curves: &CurveLayer,
+    rays: &[RayPacket],
+    ends: impl Fn(usize) -> &'a [f32; LANES],
+) -> ([RayPacket; STREAM_PACKETS], [[f32; LANES]; STREAM_PACKETS]) {
+    let mut moved = [RayPacket::EMPTY; STREAM_PACKETS];
+    let mut by = [[0.0; LANES]; STREAM_PACKETS];
+    for (packet, rays) in rays.iter().enumerate() {
+        (moved[packet], by[packet]) = curves.moved_back(rays, ends(packet));
+    }
+    (moved, by)
 }
 
 impl Built {
@@ -179,13 +230,20 @@ impl Accel for EmbreeScene {
     fn intersect(&self, kind: RayKind, rays: &[RayPacket], hits: &mut [HitPacket], filter: Option<&dyn HitFilter>) {
         assert_eq!(rays.len(), hits.len(), "a packet of hits for each packet of rays");
         let calls = self.calls(kind, false);
-        self.query(calls, filter)
+        self.query(&self.built.scenes.main, calls, filter)
             .intersect_by(calls.entry, rays, hits, |hits| self.built.resolve(hits));
+        if let Some(curves) = &self.built.scenes.curves {
+            self.intersect_curves(curves, calls, rays, hits);
+        }
     }
 
     fn occluded(&self, kind: RayKind, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         let calls = self.calls(kind, true);
-        self.query(calls, filter).occluded_by(calls.entry, rays);
+        self.query(&self.built.scenes.main, calls, filter)
+            .occluded_by(calls.entry, rays);
+        if let Some(curves) = &self.built.scenes.curves {
+            self.occlude_curves(curves, calls, rays);
+        }
     }
 
     /// Coherent packets share one traversal: seen are some ten answers in a thousand that change with the mates, of rays aimed at

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use embree_sys as ffi;
 
 use super::callbacks::{self, GeometryData};
+use super::curves::{self, CurveLayer};
 use super::device::{Device, backend_error};
 use super::motion;
 use crate::accel::{BuildOptions, BuildQuality};
 use crate::error::Result;
-use crate::geometry::{Geometry, GeometryId, Instance, Opacity, Shape, TriangleMesh, World};
+use crate::geometry::{FacingCurves, Geometry, GeometryId, Instance, Opacity, Shape, TriangleMesh, World};
 
 /// A scene of Embree's.
 pub struct SceneHandle {
@@ -115,14 +116,22 @@ impl Drop for GeometryHandle {
     }
 }
 
+/// Scenes of some of a world's geometries: the root, and one for each group.
+pub struct Layer {
+    // In this order they are dropped: instances before what they place.
+    pub root: SceneHandle,
+    _groups: Vec<Option<SceneHandle>>,
+}
+
 /// The scenes of a world. Geometries and instances of the root have dense ids in this order: `world.root()`, then
 /// `world.instances()`; the geometries of a group have their position in it.
 pub struct Scenes {
-    // In this order they are dropped: instances before what they place, scenes before what their callbacks read.
-    pub root: SceneHandle,
+    // In this order they are dropped: scenes before what their callbacks read.
+    pub main: Layer,
+    /// Curves that are Embree's own primitives, if there are any.
+    pub curves: Option<CurveLayer>,
     /// The id of the first instance.
     pub first_instance: u32,
-    _groups: Vec<Option<SceneHandle>>,
     _data: Box<[GeometryData]>,
 }
 
@@ -134,24 +143,45 @@ pub fn build(world: &Arc<World>, device: &Arc<Device>, options: &BuildOptions) -
             id: GeometryId::from_index(index),
         })
         .collect();
-    let mut geometries = Vec::with_capacity(data.len());
-    for data in &data {
-        geometries.push(geometry(device, data, options.quality)?);
+    let facing = curves::facing(world);
+    let [mut others, mut curves] = [(); 2].map(|()| Vec::with_capacity(data.len()));
+    for (data, facing) in data.iter().zip(&facing) {
+        let handle = geometry(device, data, facing.as_ref(), options.quality)?;
+        let (to, other) = match facing {
+            Some(_) => (&mut curves, &mut others),
+            None => (&mut others, &mut curves),
+        };
+        to.push(handle);
+        other.push(None);
     }
+    let has_curves = curves.iter().any(Option::is_some);
+    let of_curves = has_curves.then(|| layer(world, device, options, &curves)).transpose()?;
+    Ok(Scenes {
+        main: layer(world, device, options, &others)?,
+        curves: of_curves.map(|layer| CurveLayer::new(layer, world, &facing)),
+        first_instance: id(world.root().len())?,
+        _data: data,
+    })
+}
 
+/// Scenes of the geometries that are not `None`.
+fn layer(
+    world: &World,
+    device: &Arc<Device>,
+    options: &BuildOptions,
+    geometries: &[Option<GeometryHandle>],
+) -> Result<Layer> {
     let mut groups = Vec::with_capacity(world.groups().len());
     for members in world.groups() {
         let scene = SceneHandle::new(device, options)?;
-        let group = attach_all(&scene, members, &geometries)?.then_some(scene);
+        let group = attach_all(&scene, members, geometries)?.then_some(scene);
         if let Some(scene) = &group {
             scene.commit()?;
         }
         groups.push(group);
     }
-
-    let first_instance = id(world.root().len())?;
     let root = SceneHandle::new(device, options)?;
-    attach_all(&root, world.root(), &geometries)?;
+    attach_all(&root, world.root(), geometries)?;
     for (index, instance) in world.instances().iter().enumerate() {
         // An instance of nothing would have a box of infinities.
         if let Some(group) = &groups[instance.group.index()] {
@@ -159,12 +189,7 @@ pub fn build(world: &Arc<World>, device: &Arc<Device>, options: &BuildOptions) -
         }
     }
     root.commit()?;
-    Ok(Scenes {
-        root,
-        first_instance,
-        _groups: groups,
-        _data: data,
-    })
+    Ok(Layer { root, _groups: groups })
 }
 
 /// Attaches those of `members` that have primitives, each by its position; whether there were any.
@@ -180,14 +205,20 @@ fn attach_all(scene: &SceneHandle, members: &[GeometryId], geometries: &[Option<
 }
 
 /// A committed geometry; `None` where it has no primitive.
-fn geometry(device: &Arc<Device>, data: &GeometryData, quality: BuildQuality) -> Result<Option<GeometryHandle>> {
+fn geometry(
+    device: &Arc<Device>,
+    data: &GeometryData,
+    facing: Option<&FacingCurves>,
+    quality: BuildQuality,
+) -> Result<Option<GeometryHandle>> {
     let geometry = data.world.geometry(data.id);
     if geometry.primitive_count() == 0 {
         return Ok(None);
     }
-    let handle = match &geometry.shape {
-        Shape::Mesh(mesh) => triangles(device, geometry, mesh)?,
-        _ => analytic(device, geometry)?,
+    let handle = match (&geometry.shape, facing) {
+        (Shape::Mesh(mesh), _) => triangles(device, geometry, mesh)?,
+        (_, Some(facing)) => curves::geometry(device, geometry, facing)?,
+        (_, None) => analytic(device, geometry)?,
     };
     if quality == BuildQuality::Low {
         // In a scene of low quality each geometry has a tree of its own, of medium quality if nobody says.

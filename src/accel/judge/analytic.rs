@@ -14,11 +14,12 @@ impl Line {
     /// The line is moved by its margins, at the distance of the primitive, along each axis and back. If it always meets the
     /// primitive as many times, it certainly meets it, at distances between those found, widened by their spread; else it may
     /// or may not meet it. In world space a backend has the very line, and there is no margin but that of the distance.
-    pub(super) fn analytic(&self, shape: &Shape, primitive: usize, ray: &Ray) -> Option<Found> {
+    /// A backend's surface may be off by `off`.
+    pub(super) fn analytic(&self, shape: &Shape, primitive: usize, ray: &Ray, off: f64) -> Option<Found> {
         let bounds = shape.primitive_bounds(primitive);
         let to_center = (0.5 * (bounds.min + bounds.max)).as_dvec3() - self.origin;
         let reach = (to_center.length() + f64::from(bounds.extent().length())) / self.direction.length();
-        let moved = WIDEN * (self.origin_margin + self.direction_margin * reach);
+        let moved = WIDEN * (self.origin_margin + self.direction_margin * reach) + DVec3::splat(off);
         let shifts = [
             DVec3::ZERO,
             DVec3::X,
@@ -41,7 +42,7 @@ impl Line {
         let widened = |distances: &mut dyn Iterator<Item = f64>, certain: bool| {
             let none = [f64::INFINITY, f64::NEG_INFINITY];
             let [low, high] = distances.fold(none, |[low, high], t| [low.min(t), high.max(t)]);
-            let off = high - low + DISTANCE * low.abs().max(high.abs());
+            let off = high - low + DISTANCE * low.abs().max(high.abs()) + off / self.direction.length();
             (low <= high).then_some(Found {
                 t: [low - off, high + off],
                 certain,

@@ -112,6 +112,8 @@ impl Judge {
     /// the cross product of two edges and a a corner. With the extent E of the triangle and the distance R of its farthest corner,
     /// N is off by some 16u E (E + R), which moves the plane by as much times E where the ray meets it, and N . a is off by
     /// 16u |N| R. Of a sliver, and of a triangle that is grazed, such a distance says nothing.
+    ///
+    /// Curves that face the ray are straight pieces there, within a tenth of the width of ours.
     #[must_use]
     pub fn with_pluecker_margins(mut self) -> Self {
         self.pluecker = true;
@@ -177,7 +179,11 @@ impl Judge {
             }
             shape => {
                 for index in 0..shape.primitive_count() {
-                    add(index, line.analytic(shape, index, ray));
+                    let off = match shape {
+                        Shape::Curves(curves) if self.pluecker => curves.facing_error(index),
+                        _ => 0.0,
+                    };
+                    add(index, line.analytic(shape, index, ray, off));
                 }
             }
         }

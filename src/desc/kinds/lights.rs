@@ -54,7 +54,7 @@ pub static LIGHTS: [Entry; 7] = [
         "AreaLightSource",
         "diffuse",
         "A shape that emits the same radiance in all directions",
-        &[&RADIANCE, &AREA_IMAGE, &TWO_SIDED, &POWER, &SCALE],
+        &[&RADIANCE, &AREA_IMAGE, &TWO_SIDED, &SPREAD, &POWER, &SCALE],
     ),
 ];
 
@@ -134,3 +134,8 @@ pub static PORTAL: Parameter = Parameter::new(
 )
 .unit("scene units");
 pub static TWO_SIDED: Parameter = Parameter::flag("twosided", false, "Whether both sides emit");
+pub static SPREAD: Parameter = Parameter::choice(
+    "spread",
+    &["diffuse", "normal"],
+    "In all directions, or along the normal only, `L` being power by area, which only paths from lights find (an extension)",
+);

@@ -8,7 +8,7 @@ use super::graph::{Object, Property};
 use super::light_image;
 use super::loader::Loader;
 use super::props::Props;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind, MotionDesc, SpectrumDesc, SpotFalloff};
+use crate::desc::{AreaLightDesc, AreaSpread, LightDesc, LightKind, MotionDesc, SpectrumDesc, SpotFalloff};
 use crate::error::Error;
 use crate::image_io::{self, Encoding, Image};
 
@@ -16,21 +16,18 @@ impl<'g> Loader<'g> {
     /// The emitter of a shape.
     pub fn area_light(&mut self, object: &'g Object) -> Option<AreaLightDesc> {
         let mut props = Props::new(object);
-        if object.plugin != "area" {
-            let message = format!("an emitter of a shape is of the type `area`, not `{}`", object.plugin);
-            if object.plugin == "directionalarea" {
-                props.unsupported(
-                    object.span,
-                    "the emitter `directionalarea` is not supported",
-                    "it is left out",
-                );
-            } else {
+        let spread = match object.plugin.as_str() {
+            "area" => AreaSpread::Diffuse,
+            "directionalarea" => AreaSpread::Normal,
+            other => {
+                let message =
+                    format!("an emitter of a shape is of the type `area` or `directionalarea`, not `{other}`");
                 props.error(object.span, message);
+                props.objects(|_| true);
+                props.finish(self.report());
+                return None;
             }
-            props.objects(|_| true);
-            props.finish(self.report());
-            return None;
-        }
+        };
         let radiance = props.take("radiance");
         props.ignore(&["sampling_weight"]);
         self.medium_inside(&mut props);
@@ -50,6 +47,7 @@ impl<'g> Loader<'g> {
             scale,
             power: None,
             two_sided: false,
+            spread,
         })
     }
 
@@ -71,8 +69,12 @@ impl<'g> Loader<'g> {
             }
             "envmap" => self.environment(&mut props),
             "projector" => self.projector(&mut props),
-            "area" => {
-                props.error(object.span, "an `area` emitter is inside the shape that emits");
+            "area" | "directionalarea" => {
+                let message = format!(
+                    "an emitter of the type `{}` is inside the shape that emits",
+                    object.plugin
+                );
+                props.error(object.span, message);
                 props.objects(|_| true);
                 None
             }

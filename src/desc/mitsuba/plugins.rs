@@ -137,6 +137,7 @@ const BSDFS_REFUSED: &[&str] = &[
 ];
 const EMITTERS: &[&str] = &[
     "area",
+    "directionalarea",
     "point",
     "spot",
     "directional",
@@ -144,15 +145,7 @@ const EMITTERS: &[&str] = &[
     "envmap",
     "projector",
 ];
-const EMITTERS_REFUSED: &[&str] = &[
-    "directionalarea",
-    "sunsky",
-    "sky",
-    "sun",
-    "timed_sunsky",
-    "volumelight",
-    "collimated",
-];
+const EMITTERS_REFUSED: &[&str] = &["sunsky", "sky", "sun", "timed_sunsky", "volumelight", "collimated"];
 const INTEGRATORS: &[&str] = &[
     "path",
     "direct",

@@ -11,11 +11,11 @@ use super::report::Report;
 use super::spectrum::Use;
 use crate::desc::kinds::lights::{
     AREA_IMAGE, CONE_ANGLE, CONE_DELTA, FALLOFF, FOV, FROM, GONIOMETRIC_IMAGE, ILLUMINANCE, INFINITE_IMAGE, INTENSITY,
-    IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, TO, TWO_SIDED,
+    IRRADIANCE, PORTAL, POWER, PROJECTION_IMAGE, RADIANCE, SCALE, SPREAD, TO, TWO_SIDED,
 };
 use crate::desc::{
-    AreaLightDesc, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind, SpectrumDesc,
-    SpectrumValue, SpotFalloff,
+    AreaLightDesc, AreaSpread, ColorSpace, Entry, LIGHTS, LightDesc, LightKind, MotionDesc, Parameter, ParameterKind,
+    SpectrumDesc, SpectrumValue, SpotFalloff,
 };
 use crate::image_io::{self, Encoding, Image};
 use crate::sampling::SphereMap;
@@ -96,6 +96,10 @@ pub(super) fn read_area(mut reader: ParamReader<'_>, kind: &str) -> Option<AreaL
         image,
         power: reader.photometric(&POWER),
         two_sided: reader.bool_by(&TWO_SIDED),
+        spread: match reader.choice_by(&SPREAD) {
+            "normal" => AreaSpread::Normal,
+            _ => AreaSpread::Diffuse,
+        },
     };
     reader.finish_by(entry);
     Some(light)

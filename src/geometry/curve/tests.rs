@@ -145,3 +145,50 @@ fn boxes_hold_what_is_met() {
     }
     assert!(hits > 1000);
 }
+
+/// What a backend's own curves are made from: the axis and half the width, at every primitive.
+#[test]
+fn facing_curves_are_the_same_curves() {
+    let place = DAffine3::from_scale_rotation_translation(
+        DVec3::new(-2.0, 2.0, 2.0),
+        DQuat::from_rotation_y(0.7),
+        DVec3::new(1.0, 2.0, 3.0),
+    );
+    let set = CurveSet::new(vec![segment(); 2], CurveKind::Flat, 3, place).unwrap();
+    let facing = set.facing().unwrap();
+    assert_eq!(facing.first.len(), set.primitive_count());
+    assert_eq!(facing.points.len(), 2 * 25);
+    assert!((facing.largest_radius - 0.2).abs() < 1e-6);
+    for (primitive, &first) in facing.first.iter().enumerate() {
+        let control: [[f32; 4]; 4] = std::array::from_fn(|i| facing.points[first as usize + i]);
+        let points = control.map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
+        let radii = control.map(|[.., r]| DVec3::X * f64::from(r));
+        let (segment, [u0, u1]) = set.part(primitive);
+        for w in [0.0, 0.3, 1.0] {
+            let u = u0 + (u1 - u0) * w;
+            let axis = place.transform_point3(bezier::point(&segment.points.map(Vec3::as_dvec3), u));
+            assert!(bezier::point(&points, w).distance(axis) < 1e-5);
+            assert!((bezier::point(&radii, w).x - width_at(segment, u)).abs() < 1e-6);
+        }
+        // Straight steps stay as near to it as is said.
+        let steps = f64::from(facing.steps);
+        let middle = bezier::point(&points, 0.5 / steps);
+        let chord = 0.5 * (points[0] + bezier::point(&points, 1.0 / steps));
+        assert!(chord.distance(middle) < 0.5 * set.facing_error(primitive) + 1e-6);
+    }
+}
+
+#[test]
+fn not_all_curves_face_the_ray_in_the_world() {
+    let of = |kind, place| CurveSet::new(vec![segment()], kind, 2, place).unwrap().facing();
+    let uneven = DAffine3::from_scale(DVec3::new(1.0, 1.01, 1.0));
+    assert!(of(CurveKind::Cylinder, DAffine3::IDENTITY).is_some());
+    assert!(of(CurveKind::Ribbon, DAffine3::IDENTITY).is_none());
+    assert!(of(CurveKind::Flat, uneven).is_none());
+    let thin = CurveSegment {
+        widths: [1e-4; 2],
+        ..segment()
+    };
+    let bent = CurveSet::new(vec![thin], CurveKind::Flat, 0, DAffine3::IDENTITY).unwrap();
+    assert!(bent.facing().is_none(), "it takes more straight steps than there are");
+}

@@ -8,6 +8,7 @@ fn straight(ends: [Vec3; 2], radii: [f32; 2]) -> TubeSet {
         radii,
         along: [0.0, 1.0],
         tangents: None,
+        is_joined: false,
     };
     TubeSet::new(vec![piece], DAffine3::IDENTITY).unwrap()
 }
@@ -132,4 +133,41 @@ fn surfaces_are_those_of_mitsuba() {
         assert!((surface.ng - normal).length() < 0.02, "{} {normal}", surface.ng);
         assert!((surface.uv - uv).length() < 2e-3, "{} {uv}", surface.uv);
     }
+}
+
+/// The ball at a joint is that of the piece before; whatever can be seen of it is met there.
+#[test]
+fn a_joint_is_of_one_piece_and_closed() {
+    let ends = [Vec3::ZERO, Vec3::new(1.0, 0.2, 0.0), Vec3::new(0.6, 1.1, 0.3)];
+    let radii = [0.3, 0.2, 0.25];
+    let piece = |i: usize, is_joined| TubePiece {
+        ends: [ends[i], ends[i + 1]],
+        radii: [radii[i], radii[i + 1]],
+        along: [0.0, 1.0],
+        tangents: None,
+        is_joined,
+    };
+    let set = |is_joined| TubeSet::new(vec![piece(0, false), piece(1, is_joined)], DAffine3::IDENTITY).unwrap();
+    let (joined, apart) = (set(true), set(false));
+    let nearest = |tubes: &TubeSet, origin, direction| {
+        let all = (0..2).filter_map(|i| tubes.intersect(i, origin, direction).iter().next());
+        all.min_by(f64::total_cmp)
+    };
+    let mut on_the_ball = 0;
+    for i in 0..5000 {
+        let a = 2.4 * f64::from(i);
+        let from = DVec3::new(a.sin(), a.cos(), (0.37 * a).sin()).normalize() * 3.0;
+        let target = ends[1].as_dvec3() + 0.25 * DVec3::new((1.7 * a).sin(), (2.3 * a).cos(), (0.9 * a).sin());
+        let direction = (target - from).normalize();
+        let [t, expected] = [&joined, &apart].map(|tubes| nearest(tubes, from, direction));
+        match (t, expected) {
+            (Some(t), Some(expected)) => {
+                assert!((t - expected).abs() < 1e-9);
+                let to_ball = (from + direction * t).distance(ends[1].as_dvec3()) - f64::from(radii[1]);
+                on_the_ball += usize::from(to_ball.abs() < 1e-9);
+            }
+            (t, expected) => assert_eq!(t, expected),
+        }
+    }
+    assert!(on_the_ball > 100, "{on_the_ball}");
 }

@@ -282,6 +282,7 @@ pub(super) fn light_start(
     let pmf = scene.light_sampler().pmf(si.p, si.ns, start.light);
     let density = match (scene.light(start.light), start.origin) {
         _ if start.has_delta_position => f64::from(si.p.distance_squared(ray.origin)),
+        (light, _) if light.is_along_normals() => 0.0,
         (Light::Area(light), EmissionOrigin::Surface { p, ng, .. }) => {
             f64::from(light.pdf_li(si.p, p, ng, ray.time).0) * f64::from(start.cos_theta)
         }

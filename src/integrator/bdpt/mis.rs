@@ -57,7 +57,7 @@ pub(super) struct Partial {
 pub(super) struct LightStart {
     /// Density of the point of the light, as light samples from the surface choose it (s = 1), by solid angle there, times
     /// |cos| at the light. Where the position is a delta function: its probability times d². Of an infinite light: by solid angle; of a
-    /// distant one the probability.
+    /// distant one the probability. 0 of a light that light samples do not find.
     pub direct: f64,
     /// Density with which the light subpath has the ray: that of the light, of the position and of the direction, without delta
     /// functions.

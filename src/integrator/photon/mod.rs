@@ -18,6 +18,7 @@
 //! | caustic | E S* D S+ L | photons of the caustic map (L S+) |
 //! | indirect | E S* D S* D (S\|D)* L | photons that have met a D, or final gathering |
 //!
+//! Light that leaves a surface along its normals only, which light samples do not find, counts as if it had been scattered by an S.
 //! Scattering is S if the surface [is specular](crate::material::Bsdf::is_specular), or if a surface that is not did it by a delta lobe.
 
 mod carried;

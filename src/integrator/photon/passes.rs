@@ -17,6 +17,7 @@ use crate::desc::Terms;
 use crate::integrator::RenderStats;
 use crate::integrator::schedule::{Progress, render_tiles};
 use crate::integrator::stage::Moment;
+use crate::light::Light;
 use crate::material::Material;
 use crate::scene::{Scene, View};
 
@@ -42,7 +43,10 @@ impl<'a> Render<'a> {
     fn new(stand: Stand<'a>, max_depth: Option<u32>, caustic: u32, passes: u32) -> Self {
         let mut stats = RenderStats::default();
         let photons = u64::from(caustic) * u64::from(passes);
-        let has_caustics = photons > 0 && !stand.scene.materials().iter().all(Material::is_never_specular);
+        let scene = stand.scene;
+        let may_have_caustics = !scene.materials().iter().all(Material::is_never_specular)
+            || scene.lights().iter().any(Light::is_along_normals);
+        let has_caustics = photons > 0 && may_have_caustics;
         Self {
             guide: has_caustics
                 .then(|| learn_caustics(stand, max_depth, photons, &mut stats))

@@ -86,7 +86,15 @@ impl Estimator for PhotonTracer<'_> {
             beta: sample.le * ((f64::from(sample.cos_theta) / density) as f32),
             eta_scale: 1.0,
             cone: RayCone::default(),
-            state: self.camera_state(stage.view, &ray),
+            state: State {
+                // What light samples do not find belongs to the caustics, as if a mirror had sent it.
+                met: if stage.scene.light(chosen.light).is_along_normals() {
+                    Met::Specular
+                } else {
+                    Met::Nothing
+                },
+                hero_only: false,
+            },
         };
         stage.go_on(&lane, &ray);
     }

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 use lucerna::desc::{
-    CameraKind, FilterKind, IntegratorKind, LightKind, MaterialId, MaterialKind, ParseOptions, SamplerKind, SceneDesc,
-    ShapeKind, SpectrumValue, Textured,
+    AreaSpread, CameraKind, FilterKind, IntegratorKind, LightKind, MaterialId, MaterialKind, ParseOptions, SamplerKind,
+    SceneDesc, ShapeKind, SpectrumValue, Textured,
 };
 
 use super::super::STRICT;
@@ -194,6 +194,19 @@ fn emitters_are_placed() {
             ..
         }
     ));
+}
+
+#[test]
+fn surfaces_emit_along_their_normals() {
+    let scene = scene(
+        r#"<shape type="disk"><emitter type="directionalarea"><rgb name="radiance" value="2, 2, 2"/></emitter></shape>
+        <shape type="disk"><emitter type="area"/></shape>"#,
+    );
+    let spreads = scene
+        .shapes
+        .iter()
+        .map(|shape| shape.area_light.as_ref().map(|light| light.spread));
+    assert!(spreads.eq([Some(AreaSpread::Normal), Some(AreaSpread::Diffuse)]));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::Writer;
 use glam::DVec3;
 
 use super::entity::Entity;
-use crate::desc::{AreaLightDesc, LightDesc, LightKind, SpectrumDesc, SpotFalloff};
+use crate::desc::{AreaLightDesc, AreaSpread, LightDesc, LightKind, SpectrumDesc, SpotFalloff};
 use crate::error::Result;
 
 impl Writer<'_> {
@@ -86,6 +86,10 @@ impl Writer<'_> {
             entity.single("power", power);
         }
         entity.boolean("twosided", light.two_sided);
+        if light.spread == AreaSpread::Normal {
+            entity.string("spread", "normal");
+            self.note("AreaLightSource \"string spread\"");
+        }
         self.put(entity)
     }
 }
