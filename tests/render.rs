@@ -10,6 +10,7 @@ use common::render::{Built, MODES, blocks, combinations, parse};
 use lucerna::accel::Backend;
 use lucerna::desc::{IntegratorKind, ParseOptions, SceneDesc, load};
 use lucerna::film::PixelRect;
+use lucerna::geometry::Shape;
 use lucerna::integrator::{Integrator, Silent};
 use lucerna::sampling::SamplerKind;
 use lucerna::scene::{View, ViewOverrides};
@@ -246,6 +247,17 @@ fn samplers_agree_in_the_mean() {
     }
 }
 
+/// By how many of its standard deviations the sum of the differences between pictures of the same numbers is off zero.
+fn paired_z(a: &[f32], b: &[f32]) -> f64 {
+    let pixel = |p: &[f32]| p.iter().map(|&v| f64::from(v)).sum::<f64>();
+    let differences = a
+        .chunks_exact(3)
+        .zip(b.chunks_exact(3))
+        .map(|(a, b)| pixel(a) - pixel(b));
+    let (sum, squares) = differences.fold((0.0, 0.0), |(sum, squares), d| (sum + d, squares + d * d));
+    if squares == 0.0 { 0.0 } else { sum / squares.sqrt() }
+}
+
 /// Every scene of the repository renders without a dropped sample, to finite values that are not black; and both backends give
 /// the same picture: the same rays meet the same surfaces but for ties at edges, and whatever follows one of these.
 #[test]
@@ -258,10 +270,13 @@ fn backends_agree_on_every_scene() {
             (parameters.caustic_photons, parameters.global_photons) = (Some(10_000), Some(5_000));
         }
         for color in MODES {
+            let mut has_curves = false;
             let pictures: Vec<Vec<f32>> = Backend::AVAILABLE
                 .iter()
                 .map(|&backend| {
                     let built = Built::new(desc.clone(), backend, color);
+                    let geometries = built.scene.world().geometries();
+                    has_curves = geometries.iter().any(|g| matches!(g.shape, Shape::Curves(_)));
                     let overrides = ViewOverrides {
                         resolution: Some([64, 48]),
                         spp: Some(16),
@@ -290,6 +305,18 @@ fn backends_agree_on_every_scene() {
                     different_pixels(&pictures[0], other),
                     64 * 48
                 );
+                if has_curves {
+                    // Embree's own curves are straight pieces within a tenth of the width of ours: some samples near edges differ,
+                    // the picture in its noise only.
+                    let z = paired_z(&pictures[0], other);
+                    println!("z of the difference {z:+.2}");
+                    assert!(apart * 5 <= 64 * 48, "{name}, {color:?}: {apart} pixels differ");
+                    assert!(
+                        z.abs() < 4.0 && mean.abs() < 5e-3,
+                        "{name}, {color:?}: {mean:+.2e}, z {z}"
+                    );
+                    continue;
+                }
                 // A photon that follows a tie is seen, or missed, by some thirty pixels: all within three of where it lands.
                 let of_one = match desc.integrator.kind {
                     IntegratorKind::Photon(_) | IntegratorKind::Sppm(_) => 2 * 30, // Where it lands on either backend.
