@@ -10,6 +10,8 @@
 mod attributes;
 mod cursor;
 mod header;
+#[cfg(unix)]
+mod large;
 mod rows;
 
 use std::path::Path;
@@ -55,7 +57,15 @@ pub fn load_with_attributes(path: &Path) -> Result<PlyFile, String> {
     read(path, true)
 }
 
+/// Files of so many bytes or more are not read as a whole, if they can be read otherwise.
+#[cfg(unix)]
+const LARGE: u64 = 1 << 24;
+
 fn read(path: &Path, with_attributes: bool) -> Result<PlyFile, String> {
+    #[cfg(unix)]
+    if !with_attributes && let Some(file) = large::load(path, LARGE) {
+        return Ok(file);
+    }
     let content = bytes::read(path, LONGEST).map_err(|e| e.to_string())?;
     Ok(PlyFile {
         mesh: parse_mesh(&content, with_attributes)?,

@@ -21,16 +21,7 @@ pub(super) fn vertices(
     mesh: &mut MeshDesc,
     first_attribute: usize,
 ) {
-    let offsets: Vec<usize> = element
-        .properties
-        .iter()
-        .scan(0, |end, p| {
-            let start = *end;
-            *end += p.value.bytes();
-            Some(start)
-        })
-        .collect();
-    let at = |row: &[u8], i: usize| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32;
+    let at = numbers(element, encoding);
     let vectors = |columns: [usize; 3], into: &mut Vec<Vec3>| {
         let vector = |row| Vec3::from_array(columns.map(|i| at(row, i)));
         rows.par_chunks_exact(row)
@@ -56,6 +47,20 @@ pub(super) fn vertices(
     }
 }
 
+/// The number in a column of a row.
+pub(super) fn numbers(element: &Element, encoding: Encoding) -> impl Fn(&[u8], usize) -> f32 + Sync + '_ {
+    let offsets: Vec<usize> = element
+        .properties
+        .iter()
+        .scan(0, |end, p| {
+            let start = *end;
+            *end += p.value.bytes();
+            Some(start)
+        })
+        .collect();
+    move |row, i| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32
+}
+
 /// The bytes of a triangle, if faces are nothing but a list with a length of one byte and corners of four.
 pub(super) fn triangle_row(element: &Element) -> Option<usize> {
     match &element.properties[..] {
@@ -71,10 +76,22 @@ pub(super) fn triangle_row(element: &Element) -> Option<usize> {
 
 /// The triangles of `rows`; `None` unless all faces are triangles whose corners are not negative.
 pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<Vec<[u32; 3]>> {
-    if !rows.par_chunks_exact(row).with_min_len(SPAN).all(|face| face[0] == 3) {
+    let faces = || rows.par_chunks_exact(row).with_min_len(SPAN);
+    if !faces().all(|face| triangle(face, encoding).is_some()) {
         return None;
     }
-    let corner = |face: &[u8], i: usize| {
+    let mut triangles = Vec::new();
+    faces()
+        .map(|face| triangle(face, encoding).unwrap_or_default())
+        .collect_into_vec(&mut triangles);
+    Some(triangles)
+}
+
+/// The corners of a face that is a triangle. A negative number, or one that is larger than any number of vertices that there can be, is
+/// told of elsewhere, with its place.
+#[inline]
+pub(super) fn triangle(face: &[u8], encoding: Encoding) -> Option<[u32; 3]> {
+    let corner = |i: usize| {
         let start = 1 + 4 * i;
         let bytes = [face[start], face[start + 1], face[start + 2], face[start + 3]];
         match encoding {
@@ -82,16 +99,7 @@ pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<V
             _ => u32::from_le_bytes(bytes),
         }
     };
-    let triangle = |face: &[u8]| [corner(face, 0), corner(face, 1), corner(face, 2)];
-    let mut triangles = Vec::new();
-    rows.par_chunks_exact(row)
-        .with_min_len(SPAN)
-        .map(triangle)
-        .collect_into_vec(&mut triangles);
-    // A negative number, or one that is larger than any number of vertices that there can be, is told of elsewhere, with its place.
+    let corners = [corner(0), corner(1), corner(2)];
     let is_corner = |&i: &u32| i <= i32::MAX as u32;
-    triangles
-        .par_iter()
-        .all(|face| face.iter().all(is_corner))
-        .then_some(triangles)
+    (face[0] == 3 && corners.iter().all(is_corner)).then_some(corners)
 }
