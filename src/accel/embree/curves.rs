@@ -13,7 +13,7 @@ use super::device::{Device, backend_error};
 use super::scene::{GeometryHandle, Layer};
 use crate::error::Result;
 use crate::geometry::{
-    FacingCurves, Geometry, GeometryId, HitPacket, InstanceId, LANES, Opacity, RayPacket, Shape, World,
+    FacingCurves, Geometry, GeometryId, HitPacket, InstanceId, LANES, Opacity, Ray, RayPacket, Shape, World,
 };
 use crate::math::{AnimatedTransform, DMat3};
 
@@ -120,12 +120,17 @@ impl CurveLayer {
             }
             let [x, y, z] = [rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane]];
             let back = self.reach / (x * x + y * y + z * z).sqrt();
-            // Of a direction whose square is out of range: such a ray starts where it is.
-            let back = if back.is_finite() { back } else { 0.0 };
+            let at = [
+                rays.org_x[lane] - back * x,
+                rays.org_y[lane] - back * y,
+                rays.org_z[lane] - back * z,
+            ];
+            // Else it would start where no ray may, or the square of its direction is out of range: it starts where it is.
+            if !at.iter().all(|x| x.abs() <= Ray::LARGEST) {
+                continue;
+            }
             by[lane] = back;
-            moved.org_x[lane] -= back * x;
-            moved.org_y[lane] -= back * y;
-            moved.org_z[lane] -= back * z;
+            [moved.org_x[lane], moved.org_y[lane], moved.org_z[lane]] = at;
             moved.tnear[lane] += back;
             moved.tfar[lane] += back;
         }
