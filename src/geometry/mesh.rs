@@ -191,8 +191,14 @@ impl TriangleMesh {
                 .uvs
                 .as_ref()
                 .map_or([Vec2::ZERO, Vec2::X, Vec2::ONE], |uvs| corners.map(|v| uvs[v])),
-            side: if self.flip_normal { -1.0 } else { 1.0 },
+            side: self.side(),
         }
+    }
+
+    /// See [`Corners::side`].
+    #[inline]
+    pub(super) fn side(&self) -> f32 {
+        if self.flip_normal { -1.0 } else { 1.0 }
     }
 
     /// The unit geometric normal of a triangle at scene time 0, on the side of its shading normals if it has any; zero if the

@@ -1,9 +1,6 @@
 //! Rays and hits in struct-of-arrays packets.
 
-use crate::math::Vec3;
-
-/// Rays in a packet: the widest that both backends trace natively on AVX2.
-pub const LANES: usize = 8;
+use crate::math::{LANES, Vec3};
 
 /// One ray, as it is put into a packet.
 #[derive(Clone, Copy, Debug)]
@@ -135,14 +132,26 @@ impl RayPacket {
     #[inline]
     pub fn get(&self, lane: usize) -> Ray {
         Ray {
-            origin: Vec3::new(self.org_x[lane], self.org_y[lane], self.org_z[lane]),
-            direction: Vec3::new(self.dir_x[lane], self.dir_y[lane], self.dir_z[lane]),
+            origin: self.origin(lane),
+            direction: self.direction(lane),
             tnear: self.tnear[lane],
             tfar: self.tfar[lane],
             time: self.time[lane],
             mask: self.mask[lane],
             id: self.id[lane],
         }
+    }
+
+    /// The direction of the ray in `lane`.
+    #[inline(always)]
+    pub fn direction(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.dir_x[lane], self.dir_y[lane], self.dir_z[lane])
+    }
+
+    /// The origin of the ray in `lane`.
+    #[inline(always)]
+    pub fn origin(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.org_x[lane], self.org_y[lane], self.org_z[lane])
     }
 
     /// Whether `lane` takes part.

@@ -1,11 +1,8 @@
 //! The surfaces that eight rays hit, computed together.
 
 use super::triangle::{self, Corners, rounding_error};
-use super::{Hit, HitPacket, LANES, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
-use crate::math::{Kernel, Vec2, Vec3, Vectorizer};
-
-/// A number for each lane.
-type Lanes = [f32; LANES];
+use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
+use crate::math::{Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, Vectorizer};
 
 /// [`World::interaction`] of the lanes of a packet: the same bits, several times faster where they hit triangles in world space. Made
 /// once and filled again and again.
@@ -20,27 +17,30 @@ pub struct SurfaceLanes {
 
 /// What [`triangle::point`] and [`Corners::at`] are given.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(align(32))]
 struct Triangles {
-    /// By vertex and axis.
-    vertices: [[Lanes; 3]; 3],
-    /// By vertex and axis.
-    normals: [[Lanes; 3]; 3],
+    vertices: [Vec3Lanes; 3],
+    normals: [Vec3Lanes; 3],
     /// By vertex and coordinate.
     uvs: [[Lanes; 2]; 3],
     side: Lanes,
+    /// Whether the lane's normals are those of a mesh without any, and so its texture coordinates.
+    has_no_normals: [bool; LANES],
+    has_no_uvs: [bool; LANES],
 }
 
 /// What they give: see [`SurfaceInteraction`].
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(align(32))]
-struct Surfaces {
-    p: [Lanes; 3],
-    error: Lanes,
-    ng: [Lanes; 3],
-    ns: [Lanes; 3],
-    dpdu: [Lanes; 3],
-    dpdv: [Lanes; 3],
+pub struct Surfaces {
+    /// See [`SurfaceInteraction::p`].
+    pub p: Vec3Lanes,
+    /// See [`SurfaceInteraction::error`].
+    pub error: Lanes,
+    /// See [`SurfaceInteraction::ng`].
+    pub ng: Vec3Lanes,
+    /// See [`SurfaceInteraction::ns`].
+    pub ns: Vec3Lanes,
+    dpdu: Vec3Lanes,
+    dpdv: Vec3Lanes,
     uv: [Lanes; 2],
     barycentrics: [Lanes; 2],
 }
@@ -49,20 +49,27 @@ impl SurfaceLanes {
     /// Computes what the rays that take part hit.
     #[inline]
     pub fn fill(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
-        let triangles = &mut self.triangles;
         for lane in 0..LANES {
             let hit = hits.get(lane).and_then(|hit| world_mesh(world, hit));
             self.is_triangle[lane] = hit.is_some();
-            let Some((mesh, triangle)) = hit else { continue };
-            let corners = mesh.corners(triangle);
-            for (i, vertex) in mesh.triangle(triangle, rays.time[lane]).into_iter().enumerate() {
-                put(&mut triangles.vertices[i], lane, vertex);
-                put(&mut triangles.normals[i], lane, corners.normals[i]);
-                [triangles.uvs[i][0][lane], triangles.uvs[i][1][lane]] = corners.uvs[i].to_array();
+            if let Some((mesh, triangle)) = hit {
+                self.triangles.set(lane, mesh, triangle, rays.time[lane]);
             }
-            triangles.side[lane] = corners.side;
         }
+        let triangles = &self.triangles;
         self.surfaces = self.vectorizer.run(Compute { rays, triangles });
+    }
+
+    /// Whether the ray in `lane` hit a triangle in world space.
+    #[inline]
+    pub fn is_triangle(&self, lane: usize) -> bool {
+        self.is_triangle[lane]
+    }
+
+    /// Where rays hit triangles in world space; in other lanes anything.
+    #[inline]
+    pub fn triangles(&self) -> &Surfaces {
+        &self.surfaces
     }
 
     /// What `ray`, which was in `lane`, `hit`.
@@ -73,12 +80,12 @@ impl SurfaceLanes {
         }
         let surfaces = &self.surfaces;
         SurfaceInteraction {
-            p: of(&surfaces.p, lane),
+            p: surfaces.p.get(lane),
             error: surfaces.error[lane],
-            ng: of(&surfaces.ng, lane),
-            ns: of(&surfaces.ns, lane),
-            dpdu: of(&surfaces.dpdu, lane),
-            dpdv: of(&surfaces.dpdv, lane),
+            ng: surfaces.ng.get(lane),
+            ns: surfaces.ns.get(lane),
+            dpdu: surfaces.dpdu.get(lane),
+            dpdv: surfaces.dpdv.get(lane),
             uv: Vec2::new(surfaces.uv[0][lane], surfaces.uv[1][lane]),
             barycentrics: Vec2::new(surfaces.barycentrics[0][lane], surfaces.barycentrics[1][lane]),
             wo: -ray.direction,
@@ -98,14 +105,24 @@ fn world_mesh(world: &World, hit: Hit) -> Option<(&TriangleMesh, usize)> {
     }
 }
 
-#[inline(always)]
-fn of(axes: &[Lanes; 3], lane: usize) -> Vec3 {
-    Vec3::new(axes[0][lane], axes[1][lane], axes[2][lane])
-}
-
-#[inline(always)]
-fn put(axes: &mut [Lanes; 3], lane: usize, v: Vec3) {
-    [axes[0][lane], axes[1][lane], axes[2][lane]] = v.to_array();
+impl Triangles {
+    #[inline]
+    fn set(&mut self, lane: usize, mesh: &TriangleMesh, triangle: usize, time: f32) {
+        for (vertices, vertex) in self.vertices.iter_mut().zip(mesh.triangle(triangle, time)) {
+            vertices.set(lane, vertex);
+        }
+        // What a mesh does not have is mostly in its lane already.
+        let (no_normals, no_uvs) = (mesh.normals().is_none(), mesh.uvs().is_none());
+        if !(no_normals && self.has_no_normals[lane] && no_uvs && self.has_no_uvs[lane]) {
+            let corners = mesh.corners(triangle);
+            for (i, (normal, uv)) in corners.normals.into_iter().zip(corners.uvs).enumerate() {
+                self.normals[i].set(lane, normal);
+                [self.uvs[i][0][lane], self.uvs[i][1][lane]] = uv.to_array();
+            }
+            (self.has_no_normals[lane], self.has_no_uvs[lane]) = (no_normals, no_uvs);
+        }
+        self.side[lane] = mesh.side();
+    }
 }
 
 /// See [`SurfaceLanes::fill`].
@@ -120,13 +137,13 @@ impl Kernel for Compute<'_> {
     #[inline(always)]
     fn call(self) -> Surfaces {
         let Self { rays, triangles } = self;
-        let ([a, b, c], [na, nb, nc]) = (&triangles.vertices, &triangles.normals);
+        let (vertices, normals) = (&triangles.vertices, &triangles.normals);
         let [[ua, va], [ub, vb], [uc, vc]] = &triangles.uvs;
         let mut surfaces = Surfaces::default();
         for i in 0..LANES {
-            let vertices = [of(a, i), of(b, i), of(c, i)];
+            let vertices = [vertices[0].get(i), vertices[1].get(i), vertices[2].get(i)];
             let corners = Corners {
-                normals: [of(na, i), of(nb, i), of(nc, i)],
+                normals: [normals[0].get(i), normals[1].get(i), normals[2].get(i)],
                 uvs: [
                     Vec2::new(ua[i], va[i]),
                     Vec2::new(ub[i], vb[i]),
@@ -134,25 +151,21 @@ impl Kernel for Compute<'_> {
                 ],
                 side: triangles.side[i],
             };
-            let origin = Vec3::new(rays.org_x[i], rays.org_y[i], rays.org_z[i]).as_dvec3();
-            let direction = Vec3::new(rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]).as_dvec3();
-            let point = triangle::point(&vertices, origin, direction);
+            let point = triangle::point(&vertices, rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
             let (barycentrics, ng) = point.in_single_precision();
             let attributes = corners.at(&vertices, ng, barycentrics);
             let ng = ng * attributes.side;
             let has_ns = (attributes.ns.x != 0.0) | (attributes.ns.y != 0.0) | (attributes.ns.z != 0.0);
-            put(&mut surfaces.p, i, point.p.as_vec3());
+            surfaces.p.set(i, point.p.as_vec3());
             surfaces.error[i] = (point.error + rounding_error(point.p, ng)) as f32;
-            put(&mut surfaces.ng, i, ng);
-            put(&mut surfaces.dpdu, i, attributes.dpdu);
-            put(&mut surfaces.dpdv, i, attributes.dpdv);
-            for (ns, (given, ng)) in surfaces.ns.iter_mut().zip([
-                (attributes.ns.x, ng.x),
-                (attributes.ns.y, ng.y),
-                (attributes.ns.z, ng.z),
-            ]) {
-                ns[i] = if has_ns { given } else { ng };
-            }
+            surfaces.ng.set(i, ng);
+            surfaces.dpdu.set(i, attributes.dpdu);
+            surfaces.dpdv.set(i, attributes.dpdv);
+            let ns = |given: f32, ng: f32| if has_ns { given } else { ng };
+            let given = attributes.ns;
+            surfaces
+                .ns
+                .set(i, Vec3::new(ns(given.x, ng.x), ns(given.y, ng.y), ns(given.z, ng.z)));
             [surfaces.uv[0][i], surfaces.uv[1][i]] = attributes.uv.to_array();
             [surfaces.barycentrics[0][i], surfaces.barycentrics[1][i]] = barycentrics;
         }

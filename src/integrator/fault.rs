@@ -22,6 +22,8 @@ pub enum Fault {
     AdjointForgotten,
     /// Bidirectional weights count connections of vertices that scatter by delta lobes.
     DeltaConnected,
+    /// No mistake: paths are taken one by one that are otherwise taken together. In all builds.
+    OneByOne,
 }
 
 impl Fault {

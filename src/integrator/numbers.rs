@@ -1,7 +1,6 @@
 //! The random numbers of paths, by what they decide: see the table in [`integrator`](super).
 
-use crate::geometry::LANES;
-use crate::math::{Vec2, Vectorizer};
+use crate::math::{LANES, Lanes, Vec2, Vectorizer};
 use crate::sampling::SampleStream;
 
 /// Groups of random numbers that the camera sample uses; of a light path's branch, those of its start.
@@ -78,8 +77,8 @@ fn event_group(depth: u32) -> u32 {
 
 /// [`EventNumbers`] of eight paths.
 pub(super) struct EventLanes {
-    light: [[f32; LANES]; 4],
-    bsdf: [[f32; LANES]; 4],
+    light: [Lanes; 4],
+    bsdf: [Lanes; 4],
 }
 
 impl EventLanes {
@@ -92,10 +91,36 @@ impl EventLanes {
         }
     }
 
+    /// The two for points of lights.
+    #[inline]
+    pub fn light(&self) -> [&Lanes; 2] {
+        let [x, y, ..] = &self.light;
+        [x, y]
+    }
+
+    /// See [`EventNumbers::which_light`].
+    #[inline]
+    pub fn which_light(&self) -> &Lanes {
+        &self.light[2]
+    }
+
+    /// See [`EventNumbers::roulette`].
+    #[inline]
+    pub fn roulette(&self) -> &Lanes {
+        &self.light[3]
+    }
+
+    /// The two for directions within lobes.
+    #[inline]
+    pub fn bsdf(&self) -> [&Lanes; 2] {
+        let [x, y, ..] = &self.bsdf;
+        [x, y]
+    }
+
     /// Those of one of the paths.
     #[inline]
     pub fn get(&self, lane: usize) -> EventNumbers {
-        let of = |numbers: &[[f32; LANES]; 4]| numbers.map(|numbers| numbers[lane]);
+        let of = |numbers: &[Lanes; 4]| numbers.map(|numbers| numbers[lane]);
         EventNumbers::new(of(&self.light), of(&self.bsdf))
     }
 }

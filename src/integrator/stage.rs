@@ -5,11 +5,11 @@ use std::sync::Mutex;
 
 use super::RenderStats;
 use super::lane::{Batch, Lane, Slot};
-use super::numbers::EventNumbers;
+use super::numbers::{EventLanes, EventNumbers};
 use super::shadow::{Contribution, NO_NOTE, ShadowQueue, SplatContribution, shadow_ray};
 use super::wave::WAVE_LANES;
 use crate::film::{Film, TileSums};
-use crate::geometry::{Ray, RayCone, SurfaceInteraction};
+use crate::geometry::{Hit, HitPacket, LANES, Ray, RayCone, RayPacket, SurfaceInteraction, SurfaceLanes};
 use crate::light::LightSample;
 use crate::material::TransportMode;
 use crate::sampling::SampleStream;
@@ -72,6 +72,18 @@ pub(super) trait Estimator: Sync + Sized {
         let _ = (stage, slot, stream);
     }
 
+    /// Takes paths to their next scattering events that can be taken there together, and says which of `packet` those are: the others, and
+    /// all where nothing is gained, are [shaded](Self::shade) one by one. What a path brings and where it goes must not depend on the
+    /// paths beside it.
+    fn shade_together<'s>(
+        &self,
+        stage: &mut Stage<'_, 's, Self>,
+        packet: &PacketVertices<'_, Self::State>,
+    ) -> [bool; LANES] {
+        let _ = (stage, packet);
+        [false; LANES]
+    }
+
     /// Takes a path to its next scattering event.
     fn shade<'s>(&self, stage: &mut Stage<'_, 's, Self>, vertex: Vertex<'_, Self::State>);
 }
@@ -119,6 +131,42 @@ pub(super) struct Vertex<'a, S> {
     pub numbers: &'a EventNumbers,
 }
 
+/// Where the rays of a packet ended.
+pub(super) struct PacketVertices<'a, S> {
+    /// The paths.
+    pub lanes: &'a [Lane<S>],
+    /// Their rays.
+    pub rays: &'a RayPacket,
+    /// What they hit.
+    pub hits: &'a HitPacket,
+    /// The surfaces there.
+    pub surfaces: &'a SurfaceLanes,
+    /// Random numbers for the scattering events there.
+    pub numbers: &'a EventLanes,
+}
+
+impl<S> PacketVertices<'_, S> {
+    /// The surface that a lane `hit`, unless its ray may have passed it.
+    #[inline]
+    pub fn surface(&self, scene: &Scene, lane: usize, hit: Hit) -> SurfaceInteraction {
+        let surface = self.surfaces.get(scene.world(), lane, &self.rays.get(lane), hit);
+        SurfaceInteraction {
+            footprint: self.lanes[lane]
+                .cone
+                .after(surface.p.distance(self.rays.origin(lane)))
+                .width,
+            ..surface
+        }
+    }
+
+    /// The cone of the ray from the triangle on that a lane hit.
+    #[inline]
+    pub fn cone(&self, lane: usize) -> RayCone {
+        let p = self.surfaces.triangles().p.get(lane);
+        self.lanes[lane].cone.after(p.distance(self.rays.origin(lane)))
+    }
+}
+
 /// Shadow rays that are traced before the end of a batch, if there are so many.
 const MOST_SHADOWS: usize = 1 << 14;
 
@@ -164,7 +212,13 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Sends a path on its way by `ray`.
     #[inline]
     pub fn go_on(&mut self, lane: &Lane<E::State>, ray: &Ray) {
-        if !ray.is_valid() {
+        self.go_on_if(ray.is_valid(), lane, ray);
+    }
+
+    /// [`Self::go_on`] by a ray of which it is known whether it is valid.
+    #[inline]
+    pub fn go_on_if(&mut self, is_valid: bool, lane: &Lane<E::State>, ray: &Ray) {
+        if !is_valid {
             self.slot(lane).broken = true;
             return;
         }
@@ -192,7 +246,13 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Adds a contribution to its slot if nothing is in the way of `ray`.
     #[inline]
     pub fn add_unless_occluded(&mut self, ray: &Ray, contribution: Contribution) {
-        if ray.is_valid() {
+        self.add_unless_occluded_if(ray.is_valid(), ray, contribution);
+    }
+
+    /// [`Self::add_unless_occluded`] by a ray of which it is known whether it is valid.
+    #[inline]
+    pub fn add_unless_occluded_if(&mut self, is_valid: bool, ray: &Ray, contribution: Contribution) {
+        if is_valid {
             self.shadows.push(ray, contribution);
         } else {
             self.slots[contribution.slot as usize].broken = true;

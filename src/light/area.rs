@@ -7,6 +7,7 @@ use super::coordinates::{Coordinates, sphere_uv};
 use super::emission::{sample_side, side_pdf};
 use super::emitter::{Emitter, EmitterShape, SamplePlace, SurfaceSample};
 use super::image::EmissionImage;
+use super::lanes::PlaneLight;
 use super::moving::{MovingEmitter, sphere_shape};
 use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
 use crate::desc::AreaSpread;
@@ -149,6 +150,33 @@ impl AreaLight {
     /// Whether no ray meets it.
     pub(super) fn is_delta(&self) -> bool {
         matches!(self.alpha, FloatTexture::Constant(alpha) if alpha <= 0.0)
+    }
+
+    /// See [`PlaneLight`]; `None` if it is not one.
+    #[inline]
+    pub(super) fn plane(&self) -> Option<PlaneLight<'_>> {
+        let Radiance::Constant(radiance) = &self.radiance else {
+            return None;
+        };
+        let is_plain = matches!(self.alpha, FloatTexture::Constant(1.0)) && self.spread == AreaSpread::Diffuse;
+        if self.motion.is_some() || !is_plain {
+            return None;
+        }
+        let (is_triangle, vectors, ng) = match &self.emitter.shape {
+            EmitterShape::Triangle { vertices, ng } => (true, *vertices, *ng),
+            EmitterShape::Parallelogram { corner, edges, ng } => (false, [*corner, edges[0], edges[1]], *ng),
+            _ => return None,
+        };
+        let (pdf, error) = self.emitter.plane_point_data();
+        Some(PlaneLight {
+            is_triangle,
+            vectors,
+            ng,
+            error,
+            pdf,
+            two_sided: self.two_sided,
+            radiance,
+        })
     }
 
     /// Its surface area, one side; at time 0 if it moves.

@@ -94,6 +94,12 @@ impl Emitter {
         })
     }
 
+    /// The density of a point by area, and its [error](SurfaceSample::error), if it is plane.
+    #[inline]
+    pub fn plane_point_data(&self) -> (AreaPdf, f32) {
+        (self.uniform, self.error)
+    }
+
     /// Density, by solid angle at `from`, of [`Self::sample`] for the point `p`, where the geometric normal is `ng`.
     #[inline]
     pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
@@ -155,12 +161,11 @@ impl Emitter {
         };
         match &self.shape {
             EmitterShape::Triangle { vertices, ng } => {
-                let b = warp::sample_uniform_triangle(u);
-                let p = vertices[0] * b.x + vertices[1] * b.y + vertices[2] * b.z;
-                plane(p, *ng, SamplePlace::Triangle(b))
+                let (p, barycentrics) = plane_point(vertices, true, u);
+                plane(p, *ng, SamplePlace::Triangle(barycentrics))
             }
             EmitterShape::Parallelogram { corner, edges, ng } => {
-                let p = *corner + edges[0] * u.x + edges[1] * u.y;
+                let (p, _) = plane_point(&[*corner, edges[0], edges[1]], false, u);
                 plane(p, *ng, SamplePlace::Parallelogram)
             }
             EmitterShape::Sphere { center, radius, inward } => {
@@ -182,6 +187,21 @@ impl Emitter {
             }
         }
     }
+}
+
+/// A point, uniform by area, of the triangle with these corners, or of the parallelogram with the first as a corner and the others as
+/// its edges; and the weights of the three. Without branches, so that it is vectorised over lanes.
+#[inline(always)]
+pub(super) fn plane_point(vectors: &[Vec3; 3], is_triangle: bool, u: Vec2) -> (Vec3, Vec3) {
+    let barycentrics = warp::sample_uniform_triangle(u);
+    let weight = |of_triangle, of_parallelogram| if is_triangle { of_triangle } else { of_parallelogram };
+    let weights = Vec3::new(
+        weight(barycentrics.x, 1.0),
+        weight(barycentrics.y, u.x),
+        weight(barycentrics.z, u.y),
+    );
+    let p = vectors[0] * weights.x + vectors[1] * weights.y + vectors[2] * weights.z;
+    (p, weights)
 }
 
 /// A point that a backend sees off its place by `error`, and by rounding.
@@ -221,8 +241,9 @@ fn ellipsoid_pdf(sphere: &Sphere, outward: DVec3) -> AreaPdf {
     AreaPdf((1.0 / (4.0 * PI * sphere.radius().powi(2) * growth)) as f32)
 }
 
-#[inline]
-fn area_to_solid_angle(pdf: AreaPdf, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
+/// The density by solid angle at `from` of the point `p`, where the geometric normal is `ng`.
+#[inline(always)]
+pub(super) fn area_to_solid_angle(pdf: AreaPdf, from: Vec3, p: Vec3, ng: Vec3) -> SolidAnglePdf {
     let to_light = p - from;
     let distance_squared = to_light.length_squared();
     let cos = ng.dot(to_light).abs() / distance_squared.sqrt();

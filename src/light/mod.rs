@@ -10,6 +10,7 @@ mod emitter;
 mod environment;
 mod goniometric;
 mod image;
+mod lanes;
 mod moving;
 mod patch;
 mod place;
@@ -28,6 +29,7 @@ pub use emitter::EmitterShape;
 pub use environment::EnvironmentLight;
 pub use goniometric::GoniometricLight;
 pub use image::EmissionImage;
+pub use lanes::{ChosenLight, LightLanes, LightSampleLanes};
 pub use moving::{MovingEmitter, Side};
 pub use patch::PatchEmitter;
 pub use place::{Place, facing};
@@ -41,6 +43,7 @@ use crate::geometry::SurfaceInteraction;
 use crate::math::{Bounds3, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{SampledSpectrum, Wavelengths};
+use lanes::PlaneLight;
 
 /// A light of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -123,6 +126,15 @@ impl Light {
             Self::Projection(light) => light.sample_li(p, time, lambda),
             Self::Distant(light) => Some(light.sample_li(time, lambda)),
             Self::Environment(light) => light.sample_li(p, time, u, lambda),
+        }
+    }
+
+    /// As a plane that is alike all over, if it is one.
+    #[inline]
+    fn plane(&self) -> Option<PlaneLight<'_>> {
+        match self {
+            Self::Area(light) => light.plane(),
+            _ => None,
         }
     }
 

@@ -189,6 +189,18 @@ impl Material {
         Bsdf::new(frame, lobe)
     }
 
+    /// Its reflectance, if it is Lambertian everywhere and from both sides, and nothing else.
+    #[inline]
+    pub fn lambertian(&self) -> Option<&SpectrumTexture> {
+        match self {
+            Self::Diffuse {
+                reflectance,
+                roughness: FloatTexture::Constant(0.0),
+            } => Some(reflectance),
+            _ => None,
+        }
+    }
+
     /// Whether some point of it may have delta lobes: be a mirror or clear glass, alone or under or over something else.
     pub fn may_have_delta(&self) -> bool {
         match self {

@@ -15,6 +15,7 @@ pub struct Frame {
 
 impl Frame {
     /// Some frame with normal `n` (unit length): Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+    #[inline]
     pub fn from_normal(n: Vec3) -> Self {
         let sign = 1.0_f32.copysign(n.z);
         let a = -1.0 / (sign + n.z);

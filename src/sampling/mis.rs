@@ -5,27 +5,24 @@
 
 /// The balance heuristic's weight of technique a: a / (a + b). A technique that cannot make the point (density 0) has
 /// weight 0. Safe for densities that are infinite or whose sum overflows; both infinite share equally.
-#[inline]
+#[inline(always)]
 pub fn balance_heuristic(pdf_a: f32, pdf_b: f32) -> f32 {
     weight(pdf_a, pdf_b, |ratio| ratio)
 }
 
 /// The power heuristic's weight of technique a, with exponent 2: a² / (a² + b²). Guarded like [`balance_heuristic`].
-#[inline]
+#[inline(always)]
 pub fn power_heuristic(pdf_a: f32, pdf_b: f32) -> f32 {
     weight(pdf_a, pdf_b, |ratio| ratio * ratio)
 }
 
 /// 1 / (1 + f(b / a)): the quotient cannot overflow into NaN as the squares of the densities would.
-#[inline]
+#[inline(always)]
 fn weight(pdf_a: f32, pdf_b: f32, f: impl Fn(f32) -> f32) -> f32 {
-    if pdf_a == 0.0 {
-        return 0.0;
-    }
-    if pdf_a.is_infinite() && pdf_b.is_infinite() {
-        return 0.5;
-    }
-    1.0 / (1.0 + f(pdf_b / pdf_a))
+    let weight = 1.0 / (1.0 + f(pdf_b / pdf_a));
+    let is_infinite = (pdf_a == f32::INFINITY) & (pdf_b == f32::INFINITY);
+    let weight = if is_infinite { 0.5 } else { weight };
+    if pdf_a == 0.0 { 0.0 } else { weight }
 }
 
 #[cfg(test)]

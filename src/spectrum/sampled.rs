@@ -26,7 +26,8 @@ impl SampledSpectrum {
     /// Whether every lane is zero.
     #[inline]
     pub fn is_black(self) -> bool {
-        self.0.iter().all(|&v| v == 0.0)
+        let [a, b, c, d] = self.0;
+        (a == 0.0) & (b == 0.0) & (c == 0.0) & (d == 0.0)
     }
 
     /// The largest lane. NaN lanes are ignored unless all are NaN.

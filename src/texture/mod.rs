@@ -106,6 +106,15 @@ impl FloatTexture {
 }
 
 impl SpectrumTexture {
+    /// What it is everywhere, if that is the same.
+    #[inline]
+    pub fn constant(&self) -> Option<&CompiledSpectrum> {
+        match self {
+            Self::Constant(spectrum) => Some(spectrum),
+            _ => None,
+        }
+    }
+
     /// Whether it is the same everywhere.
     #[inline]
     pub fn is_constant(&self) -> bool {

@@ -13,3 +13,4 @@ mod path;
 mod stage;
 mod strategies;
 mod surfaces;
+mod together;

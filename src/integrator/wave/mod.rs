@@ -22,7 +22,7 @@ use super::lane::{Batch, NO_SLOT, Slot};
 use super::numbers::EventLanes;
 use super::schedule::TilePlace;
 use super::shadow::{Contribution, ShadowQueue, SplatContribution};
-use super::stage::{Estimator, Stage, Vertex};
+use super::stage::{Estimator, PacketVertices, Stage, Vertex};
 use super::times::lap;
 use crate::accel::{RayKind, RayOrigin};
 use crate::film::{Film, Splat, TILE_SIZE};
@@ -196,8 +196,19 @@ impl<'s, E: Estimator> Wave<'s, E> {
             surfaces.fill(scene.world(), rays, hits);
             let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
             let numbers = EventLanes::draw(vectorizer, &streams, batch.depth);
+            let mut is_done = [false; LANES];
+            if !is_first {
+                let packet = PacketVertices {
+                    lanes: mates,
+                    rays,
+                    hits,
+                    surfaces: &surfaces,
+                    numbers: &numbers,
+                };
+                is_done = estimator.shade_together(&mut stage, &packet);
+            }
             for (i, lane) in mates.iter().enumerate() {
-                if lane.slot == NO_SLOT || !rays.is_active(i) {
+                if is_done[i] || lane.slot == NO_SLOT || !rays.is_active(i) {
                     continue;
                 }
                 let ray = &rays.get(i);

@@ -4,15 +4,18 @@
 //! With `splitting` N a path becomes N at its first scattering event that is not specular: N light samples and N BSDF samples, each
 //! with a weight of 1/N. As both techniques take the same number, the weights between them stay.
 
+mod together;
+
 use super::direct::{DirectLight, Origin};
 use super::fault::Fault;
 use super::lane::Lane;
 use super::numbers::EventNumbers;
-use super::stage::{Estimator, Stage, Vertex};
+use super::stage::{Estimator, PacketVertices, Stage, Vertex};
 use crate::desc::{Heuristic, Strategy};
-use crate::geometry::{Ray, RayCone, SurfaceInteraction};
+use crate::geometry::{LANES, Ray, RayCone, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
 use crate::scene::View;
+use together::Together;
 
 /// The path tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,11 +55,16 @@ struct Event<'a> {
 
 impl Estimator for PathIntegrator {
     type State = Origin;
-    type Memory<'s> = ();
+    type Memory<'s> = Together;
 
     #[inline]
     fn camera_state(&self, _view: &View, _ray: &Ray) -> Origin {
         Origin::Delta
+    }
+
+    #[inline]
+    fn shade_together<'s>(&self, stage: &mut PathStage<'_, 's>, packet: &PacketVertices<'_, Origin>) -> [bool; LANES] {
+        self.scatter_together(stage, packet)
     }
 
     #[inline]
@@ -161,7 +169,7 @@ impl PathIntegrator {
 
 /// The probability with which a path of this throughput goes on after the scattering event `depth`: its square root, which on the
 /// Cornell box needs a sixth fewer rays than the throughput itself for the same error.
-#[inline]
+#[inline(always)]
 pub(super) fn survival(depth: u32, throughput: f32, is_unlimited: bool) -> f32 {
     if depth < FIRST_ROULETTE_DEPTH {
         return 1.0;

@@ -1,0 +1,71 @@
+//! Paths that are taken to their next events together have the bits of those taken one by one.
+
+use lucerna::accel::Backend;
+use lucerna::desc::Heuristic;
+use lucerna::integrator::{Fault, Integrator};
+use lucerna::scene::ViewOverrides;
+
+use crate::common::render::{Built, MODES, parse};
+use crate::lamps::LAMPS;
+
+/// A room of what is taken together (Lambertian triangles, plain, with normals, with a picture, moving, black) and of what is not.
+fn scene(lamp: usize, motion: &str, light_sampler: &str) -> String {
+    format!(
+        r#"LookAt 0 1.6 -5.5  0 0.8 0  0 1 0
+        Camera "perspective" "float fov" 40 "float lensradius" 0.05 "float focaldistance" 5
+        Film "rgb" "integer xresolution" 37 "integer yresolution" 23
+        Sampler "sobol" "integer pixelsamples" 8
+        Integrator "path" "integer maxdepth" 12 "string lightsampler" "{light_sampler}"
+        WorldBegin
+        {lamp}
+        Texture "bricks" "spectrum" "imagemap" "string filename" "../scenes/parts/bricks.png" "float uscale" 3
+        AttributeBegin
+            Material "diffuse" "texture reflectance" "bricks"
+            Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-9 0 -5  -9 0 9  9 0 9  9 0 -5]
+                "point2 uv" [0 0 0 1 1 1 1 0]
+        AttributeEnd
+        AttributeBegin
+            Material "diffuse" "rgb reflectance" [0.9 0.7 0.6]
+            Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-9 0 2  -9 6 2  9 6 2  9 0 2]
+                "normal N" [0.2 0 -1  0 0.3 -1  -0.2 0 -1  0 -0.3 -1]
+        AttributeEnd
+        AttributeBegin
+            {motion}
+            Material "diffuse" "rgb reflectance" [0.3 0.8 0.3]
+            Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-3 0 -1  -1 0 -1  -2 2 0]
+            Material "diffuse" "rgb reflectance" [0 0 0]
+            Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [1 0 -1  3 0 -1  2 2 0]
+            Material "dielectric" Translate 0 0.7 -1 Shape "sphere" "float radius" 0.6
+            Material "diffuse" Translate 0 1.3 0 Shape "sphere" "float radius" 0.6
+        AttributeEnd"#,
+        lamp = LAMPS[lamp].text(motion),
+    )
+}
+
+#[test]
+fn paths_taken_together_are_those_taken_one_by_one() {
+    let motions = ["", "ActiveTransform EndTime Translate 0.2 0.1 0.1 ActiveTransform All"];
+    for lamp in 0..LAMPS.len() {
+        let light_sampler = ["bvh", "power", "uniform"][lamp % 3];
+        let text = scene(lamp, motions[lamp % 2], light_sampler);
+        for color in MODES {
+            let built = Built::new(parse(&text), Backend::Bvh, color);
+            let view = built.view(0, &ViewOverrides::default());
+            for heuristic in [Heuristic::Power, Heuristic::Balance] {
+                let Integrator::Path(mut path) = Integrator::from_desc(&built.desc.integrator) else {
+                    panic!("not a path tracer");
+                };
+                path.heuristic = heuristic;
+                let (together, stats) = built.picture_with(&view, Integrator::Path(path));
+                path.fault = Fault::OneByOne;
+                let (one_by_one, other) = built.picture_with(&view, Integrator::Path(path));
+                let name = format!("{} in {color:?}, {heuristic:?}", LAMPS[lamp].name);
+                assert!(together.iter().sum::<f32>() > 0.0, "{name} is black");
+                let rays = |stats: &lucerna::integrator::RenderStats| (stats.bounce_rays, stats.shadow_rays);
+                assert_eq!(rays(&stats), rays(&other), "{name}");
+                let different = together.iter().zip(&one_by_one).filter(|(a, b)| a != b).count();
+                assert_eq!(different, 0, "{name}: so many of {}", together.len());
+            }
+        }
+    }
+}
