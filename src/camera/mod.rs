@@ -123,13 +123,13 @@ impl Camera {
 
     /// The ray of a sample, with a direction of unit length, and its [importance](Camera::importance). `None` if nothing comes through
     /// the lenses.
-    #[inline]
+    #[inline(always)]
     pub fn generate_ray(&self, sample: &CameraSample) -> Option<(Ray, f32)> {
         self.ray_at(sample, self.scene_time(sample.time))
     }
 
     /// [`Camera::generate_ray`], at a scene time whatever the time of the sample.
-    #[inline]
+    #[inline(always)]
     pub fn ray_at(&self, sample: &CameraSample, time: f32) -> Option<(Ray, f32)> {
         let (origin, direction, importance) = match &self.eye {
             Eye::Planar(planar) => {

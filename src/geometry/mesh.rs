@@ -3,6 +3,11 @@
 use super::triangle::Corners;
 use crate::math::{Bounds3, Vec2, Vec3};
 
+/// What stands for the normals of a triangle's corners in a mesh without any.
+pub(super) const NO_NORMALS: [Vec3; 3] = [Vec3::ZERO; 3];
+/// The texture coordinates of a triangle's corners in a mesh without any, as in pbrt.
+pub(super) const PLAIN_UVS: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::ONE];
+
 /// An indexed triangle mesh. Vertices are given at one or more scene times, evenly spaced over [0, 1], and move linearly
 /// between them; normals and texture coordinates do not change with time.
 #[derive(Clone, Debug)]
@@ -178,19 +183,19 @@ impl TriangleMesh {
         std::array::from_fn(|i| now[i] * (1.0 - fraction) + next[i] * fraction)
     }
 
-    /// What the mesh says of the corners of a triangle. Without texture coordinates they are (0, 0), (1, 0), (1, 1), as in pbrt.
+    /// What the mesh says of the corners of a triangle.
     #[inline]
     pub(super) fn corners(&self, triangle: usize) -> Corners {
-        let corners = self.indices[triangle].map(|v| v as usize);
+        let [a, b, c] = self.indices[triangle].map(|v| v as usize);
         Corners {
-            normals: self
-                .normals
-                .as_ref()
-                .map_or([Vec3::ZERO; 3], |normals| corners.map(|v| normals[v])),
-            uvs: self
-                .uvs
-                .as_ref()
-                .map_or([Vec2::ZERO, Vec2::X, Vec2::ONE], |uvs| corners.map(|v| uvs[v])),
+            normals: match &self.normals {
+                Some(normals) => [normals[a], normals[b], normals[c]],
+                None => NO_NORMALS,
+            },
+            uvs: match &self.uvs {
+                Some(uvs) => [uvs[a], uvs[b], uvs[c]],
+                None => PLAIN_UVS,
+            },
             side: self.side(),
         }
     }
@@ -219,7 +224,7 @@ impl TriangleMesh {
     }
 
     /// The time step at or before `time`, and how far towards the next one it is, in [0, 1]. 0 and 0 if nothing moves.
-    #[inline]
+    #[inline(always)]
     pub fn time_step(&self, time: f32) -> (usize, f32) {
         let segments = self.positions.len() - 1;
         if segments == 0 {

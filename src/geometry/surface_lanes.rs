@@ -1,8 +1,9 @@
 //! The surfaces that eight rays hit, computed together.
 
+use super::mesh::{NO_NORMALS, PLAIN_UVS};
 use super::triangle::{self, Corners, rounding_error};
 use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
-use crate::math::{Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, Vectorizer};
+use crate::math::{Kernel, LANES, Lanes, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 
 /// [`World::interaction`] of the lanes of a packet: the same bits, several times faster where they hit triangles in world space. Made
 /// once and filled again and again.
@@ -20,8 +21,7 @@ pub struct SurfaceLanes {
 struct Triangles {
     vertices: [Vec3Lanes; 3],
     normals: [Vec3Lanes; 3],
-    /// By vertex and coordinate.
-    uvs: [[Lanes; 2]; 3],
+    uvs: [Vec2Lanes; 3],
     side: Lanes,
     /// Whether the lane's normals are those of a mesh without any, and so its texture coordinates.
     has_no_normals: [bool; LANES],
@@ -39,10 +39,12 @@ pub struct Surfaces {
     pub ng: Vec3Lanes,
     /// See [`SurfaceInteraction::ns`].
     pub ns: Vec3Lanes,
+    /// From the origins of the rays.
+    pub distance: Lanes,
     dpdu: Vec3Lanes,
     dpdv: Vec3Lanes,
-    uv: [Lanes; 2],
-    barycentrics: [Lanes; 2],
+    uv: Vec2Lanes,
+    barycentrics: Vec2Lanes,
 }
 
 impl SurfaceLanes {
@@ -86,8 +88,8 @@ impl SurfaceLanes {
             ns: surfaces.ns.get(lane),
             dpdu: surfaces.dpdu.get(lane),
             dpdv: surfaces.dpdv.get(lane),
-            uv: Vec2::new(surfaces.uv[0][lane], surfaces.uv[1][lane]),
-            barycentrics: Vec2::new(surfaces.barycentrics[0][lane], surfaces.barycentrics[1][lane]),
+            uv: surfaces.uv.get(lane),
+            barycentrics: surfaces.barycentrics.get(lane),
             wo: -ray.direction,
             footprint: 0.0,
             time: ray.time,
@@ -108,20 +110,34 @@ fn world_mesh(world: &World, hit: Hit) -> Option<(&TriangleMesh, usize)> {
 impl Triangles {
     #[inline]
     fn set(&mut self, lane: usize, mesh: &TriangleMesh, triangle: usize, time: f32) {
-        for (vertices, vertex) in self.vertices.iter_mut().zip(mesh.triangle(triangle, time)) {
-            vertices.set(lane, vertex);
+        let corners = mesh.indices()[triangle];
+        if mesh.is_moving() {
+            set_all(&mut self.vertices, lane, [0, 1, 2], &mesh.triangle(triangle, time));
+        } else {
+            set_all(&mut self.vertices, lane, corners, mesh.positions(0));
         }
         // What a mesh does not have is mostly in its lane already.
-        let (no_normals, no_uvs) = (mesh.normals().is_none(), mesh.uvs().is_none());
-        if !(no_normals && self.has_no_normals[lane] && no_uvs && self.has_no_uvs[lane]) {
-            let corners = mesh.corners(triangle);
-            for (i, (normal, uv)) in corners.normals.into_iter().zip(corners.uvs).enumerate() {
-                self.normals[i].set(lane, normal);
-                [self.uvs[i][0][lane], self.uvs[i][1][lane]] = uv.to_array();
-            }
-            (self.has_no_normals[lane], self.has_no_uvs[lane]) = (no_normals, no_uvs);
+        match mesh.normals() {
+            Some(normals) => set_all(&mut self.normals, lane, corners, normals),
+            None if self.has_no_normals[lane] => {}
+            None => set_all(&mut self.normals, lane, [0, 1, 2], &NO_NORMALS),
         }
+        self.has_no_normals[lane] = mesh.normals().is_none();
+        match mesh.uvs() {
+            Some(uvs) => set_all(&mut self.uvs, lane, corners, uvs),
+            None if self.has_no_uvs[lane] => {}
+            None => set_all(&mut self.uvs, lane, [0, 1, 2], &PLAIN_UVS),
+        }
+        self.has_no_uvs[lane] = mesh.uvs().is_none();
         self.side[lane] = mesh.side();
+    }
+}
+
+/// Puts what three corners have of `values` into a lane. One by one: an array of them would go by way of memory.
+#[inline(always)]
+fn set_all<L: VectorLanes>(lanes: &mut [L; 3], lane: usize, corners: [u32; 3], values: &[L::Vector]) {
+    for i in 0..3 {
+        lanes[i].set(lane, values[corners[i] as usize]);
     }
 }
 
@@ -137,18 +153,15 @@ impl Kernel for Compute<'_> {
     #[inline(always)]
     fn call(self) -> Surfaces {
         let Self { rays, triangles } = self;
-        let (vertices, normals) = (&triangles.vertices, &triangles.normals);
-        let [[ua, va], [ub, vb], [uc, vc]] = &triangles.uvs;
+        let Triangles {
+            vertices, normals, uvs, ..
+        } = triangles;
         let mut surfaces = Surfaces::default();
         for i in 0..LANES {
             let vertices = [vertices[0].get(i), vertices[1].get(i), vertices[2].get(i)];
             let corners = Corners {
                 normals: [normals[0].get(i), normals[1].get(i), normals[2].get(i)],
-                uvs: [
-                    Vec2::new(ua[i], va[i]),
-                    Vec2::new(ub[i], vb[i]),
-                    Vec2::new(uc[i], vc[i]),
-                ],
+                uvs: [uvs[0].get(i), uvs[1].get(i), uvs[2].get(i)],
                 side: triangles.side[i],
             };
             let point = triangle::point(&vertices, rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
@@ -156,7 +169,9 @@ impl Kernel for Compute<'_> {
             let attributes = corners.at(&vertices, ng, barycentrics);
             let ng = ng * attributes.side;
             let has_ns = (attributes.ns.x != 0.0) | (attributes.ns.y != 0.0) | (attributes.ns.z != 0.0);
-            surfaces.p.set(i, point.p.as_vec3());
+            let p = point.p.as_vec3();
+            surfaces.p.set(i, p);
+            surfaces.distance[i] = p.distance(rays.origin(i));
             surfaces.error[i] = (point.error + rounding_error(point.p, ng)) as f32;
             surfaces.ng.set(i, ng);
             surfaces.dpdu.set(i, attributes.dpdu);
@@ -166,8 +181,8 @@ impl Kernel for Compute<'_> {
             surfaces
                 .ns
                 .set(i, Vec3::new(ns(given.x, ng.x), ns(given.y, ng.y), ns(given.z, ng.z)));
-            [surfaces.uv[0][i], surfaces.uv[1][i]] = attributes.uv.to_array();
-            [surfaces.barycentrics[0][i], surfaces.barycentrics[1][i]] = barycentrics;
+            surfaces.uv.set(i, attributes.uv);
+            surfaces.barycentrics.set(i, barycentrics.into());
         }
         surfaces
     }
@@ -177,7 +192,7 @@ impl Kernel for Compute<'_> {
 mod tests {
     use super::*;
     use crate::geometry::{Geometry, GeometryId, Group, Instance, PrimitiveId, Sphere, WorldBuilder};
-    use crate::math::{AnimatedTransform, DAffine3, DVec3};
+    use crate::math::{AnimatedTransform, DAffine3, DVec3, Vec2};
 
     /// Meshes bare, with normals (one of which faces away), with texture coordinates, moving; a sphere; an instance.
     fn world() -> World {

@@ -146,24 +146,19 @@ pub(super) struct PacketVertices<'a, S> {
 }
 
 impl<S> PacketVertices<'_, S> {
-    /// The surface that a lane `hit`, unless its ray may have passed it.
+    /// The triangle in world space that a lane `hit`, unless its ray may have passed it.
     #[inline]
     pub fn surface(&self, scene: &Scene, lane: usize, hit: Hit) -> SurfaceInteraction {
-        let surface = self.surfaces.get(scene.world(), lane, &self.rays.get(lane), hit);
         SurfaceInteraction {
-            footprint: self.lanes[lane]
-                .cone
-                .after(surface.p.distance(self.rays.origin(lane)))
-                .width,
-            ..surface
+            footprint: self.cone(lane).width,
+            ..self.surfaces.get(scene.world(), lane, &self.rays.get(lane), hit)
         }
     }
 
     /// The cone of the ray from the triangle on that a lane hit.
     #[inline]
     pub fn cone(&self, lane: usize) -> RayCone {
-        let p = self.surfaces.triangles().p.get(lane);
-        self.lanes[lane].cone.after(p.distance(self.rays.origin(lane)))
+        self.lanes[lane].cone.after(self.surfaces.triangles().distance[lane])
     }
 }
 

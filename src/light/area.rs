@@ -153,12 +153,10 @@ impl AreaLight {
     }
 
     /// See [`PlaneLight`]; `None` if it is not one.
-    #[inline]
-    pub(super) fn plane(&self) -> Option<PlaneLight<'_>> {
-        let Radiance::Constant(radiance) = &self.radiance else {
-            return None;
-        };
-        let is_plain = matches!(self.alpha, FloatTexture::Constant(1.0)) && self.spread == AreaSpread::Diffuse;
+    pub(super) fn plane(&self) -> Option<PlaneLight> {
+        let is_plain = matches!(self.radiance, Radiance::Constant(_))
+            && matches!(self.alpha, FloatTexture::Constant(1.0))
+            && self.spread == AreaSpread::Diffuse;
         if self.motion.is_some() || !is_plain {
             return None;
         }
@@ -175,8 +173,16 @@ impl AreaLight {
             error,
             pdf,
             two_sided: self.two_sided,
-            radiance,
         })
+    }
+
+    /// What it emits everywhere, if that is the same; else 0.
+    #[inline]
+    pub(super) fn constant_radiance(&self, lambda: &Wavelengths) -> SampledSpectrum {
+        match &self.radiance {
+            Radiance::Constant(radiance) => radiance.sample(lambda),
+            Radiance::Image(..) => SampledSpectrum::ZERO,
+        }
     }
 
     /// Its surface area, one side; at time 0 if it moves.

@@ -2,12 +2,12 @@
 
 use super::emitter::{area_to_solid_angle, plane_point};
 use super::{Light, LightDensity, LightEnd, LightId, LightSample};
-use crate::math::{Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, Vectorizer};
+use crate::math::{Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 use crate::sampling::AreaPdf;
-use crate::spectrum::{CompiledSpectrum, SpectrumLanes, Wavelengths};
+use crate::spectrum::{SpectrumLanes, Wavelengths};
 
 /// [`Light::sample_li`] of eight lanes: the same bits, several times faster for plane lights at rest that are alike all over. Made once
-/// and filled again and again.
+/// for the lights of a scene and filled again and again.
 #[derive(Clone, Debug, Default)]
 pub struct LightLanes {
     vectorizer: Vectorizer,
@@ -19,7 +19,7 @@ pub struct LightLanes {
 
 /// A triangle or a parallelogram at rest that sends out the same radiance everywhere.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PlaneLight<'a> {
+pub(super) struct PlaneLight {
     /// Whether it is a triangle with these corners; if not, it has a corner here and two edges from there.
     pub is_triangle: bool,
     pub vectors: [Vec3; 3],
@@ -30,7 +30,6 @@ pub(super) struct PlaneLight<'a> {
     /// Of a point of it.
     pub pdf: AreaPdf,
     pub two_sided: bool,
-    pub radiance: &'a CompiledSpectrum,
 }
 
 /// See [`PlaneLight`].
@@ -81,15 +80,14 @@ impl LightLanes {
     ) -> &LightSampleLanes {
         let mut is_plane = [false; LANES];
         for (lane, chosen) in lights.iter().enumerate() {
-            if let Some((id, light, lambda)) = *chosen
-                && let Some(plane) = light.plane()
-            {
-                is_plane[lane] = true;
-                if self.held[lane].replace(id) != Some(id) {
-                    self.planes.set(lane, &plane);
-                }
-                self.planes.radiance.set(lane, plane.radiance.sample(lambda));
+            let Some((id, light, lambda)) = *chosen else { continue };
+            if self.held[lane] != Some(id) {
+                let Some(plane) = light.plane() else { continue };
+                self.planes.set(lane, &plane);
+                self.held[lane] = Some(id);
             }
+            is_plane[lane] = true;
+            self.planes.radiance.set(lane, light.plane_radiance(lambda));
         }
         if is_plane != [false; LANES] {
             let planes = &self.planes;
@@ -109,10 +107,10 @@ impl LightLanes {
 }
 
 impl Planes {
-    fn set(&mut self, lane: usize, plane: &PlaneLight<'_>) {
+    fn set(&mut self, lane: usize, plane: &PlaneLight) {
         self.is_triangle[lane] = plane.is_triangle;
-        for (vectors, vector) in self.vectors.iter_mut().zip(plane.vectors) {
-            vectors.set(lane, vector);
+        for i in 0..3 {
+            self.vectors[i].set(lane, plane.vectors[i]);
         }
         self.ng.set(lane, plane.ng);
         (self.error[lane], self.pdf[lane]) = (plane.error, plane.pdf.0);

@@ -131,10 +131,19 @@ impl Light {
 
     /// As a plane that is alike all over, if it is one.
     #[inline]
-    fn plane(&self) -> Option<PlaneLight<'_>> {
+    fn plane(&self) -> Option<PlaneLight> {
         match self {
             Self::Area(light) => light.plane(),
             _ => None,
+        }
+    }
+
+    /// What a light that is such a plane sends out; 0 of others.
+    #[inline]
+    fn plane_radiance(&self, lambda: &Wavelengths) -> SampledSpectrum {
+        match self {
+            Self::Area(light) => light.constant_radiance(lambda),
+            _ => SampledSpectrum::ZERO,
         }
     }
 

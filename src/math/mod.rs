@@ -13,7 +13,7 @@ mod vectorize;
 pub use bounds::Bounds3;
 pub use frame::Frame;
 pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat2, Mat3, Mat4, Quat, Vec2, Vec3, Vec4};
-pub use lanes::{LANES, Lanes, Vec3Lanes};
+pub use lanes::{LANES, Lanes, Vec2Lanes, Vec3Lanes, VectorLanes};
 pub use motion::{AnimatedTransform, Decomposition, transform_point};
 pub use offset::{gamma, offset_ray_origin};
 pub use vectorize::{Kernel, Vectorizer};

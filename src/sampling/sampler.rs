@@ -4,7 +4,7 @@
 //! whatever the sampler.
 
 use super::hash::{GOLDEN, combine, mix64, split_mix, unit_f32};
-use super::sobol::{scramble_reversed, scrambled_point};
+use super::sobol::{scramble_reversed, scrambled_points};
 use super::stratified::Strata;
 use super::zsobol::Order;
 use super::{halton, stratified, zsobol};
@@ -188,12 +188,7 @@ fn draw<const N: usize>(streams: &[SampleStream; N], group: u32) -> [[f32; N]; 4
             #[inline(always)]
             |key, index| independent(key, index, group),
         ),
-        Plan::Sobol => each_lane(
-            keys,
-            reversed_indices,
-            #[inline(always)]
-            |key, index| sobol(key, index, group),
-        ),
+        Plan::Sobol => sobol(keys, reversed_indices, group),
         Plan::Stratified(strata) => stratified::draw(keys, reversed_indices.map(u32::reverse_bits), strata, group),
         Plan::Halton(samples) => halton::draw(keys, reversed_indices.map(u32::reverse_bits), samples, group),
         Plan::ZSobol(first) => {
@@ -228,13 +223,16 @@ fn independent(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
     [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32].map(unit_f32)
 }
 
-/// The Sobol point that this sample takes in `group`, scrambled. The index is shuffled by a nested scramble as well, so that the
+/// The Sobol points that samples take in `group`, scrambled. The index is shuffled by a nested scramble as well, so that the
 /// samples of a prefix of 2^k keep to one another while different groups are paired at random.
 #[inline(always)]
-fn sobol(key: u64, reversed_index: u32, group: u32) -> [f32; 4] {
-    let hash = split_mix(key, u64::from(group));
-    let index = scramble_reversed(reversed_index, hash as u32).reverse_bits();
-    scrambled_point(index, hash)
+fn sobol<const N: usize>(keys: [u64; N], reversed_indices: [u32; N], group: u32) -> [[f32; N]; 4] {
+    let (mut hashes, mut indices) = ([0; N], [0; N]);
+    for i in 0..N {
+        hashes[i] = split_mix(keys[i], u64::from(group));
+        indices[i] = scramble_reversed(reversed_indices[i], hashes[i] as u32).reverse_bits();
+    }
+    scrambled_points(indices, hashes)
 }
 
 #[cfg(test)]

@@ -42,17 +42,41 @@ pub fn dimensions_2_3_reversed(index: u32) -> (u32, u32) {
     (both as u32, (both >> 32) as u32)
 }
 
-/// The first four dimensions of point `index`, each Owen-scrambled by its own part of `hash`, in [0, 1).
+/// [`dimensions_2_3_reversed`] of several points without a look into tables, which vectors are slow at: the matrices of the two
+/// dimensions, diagonal by diagonal.
 #[inline(always)]
-pub(super) fn scrambled_point(index: u32, hash: u64) -> [f32; 4] {
-    let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
-    let (second, third) = dimensions_2_3_reversed(index);
-    [
-        scrambled_unit(index, a as u32),
-        scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32),
-        scrambled_unit(second, b as u32),
-        scrambled_unit(third, (b >> 32) as u32),
-    ]
+fn dimensions_2_3_of_lanes<const N: usize>(indices: [u32; N]) -> ([u32; N], [u32; N]) {
+    let (mut second, mut third) = ([0; N], [0; N]);
+    for (k, &[in_second, in_third]) in DIAGONALS.iter().enumerate() {
+        for i in 0..N {
+            let shifted = indices[i] >> k;
+            second[i] ^= shifted & in_second;
+            third[i] ^= shifted & in_third;
+        }
+    }
+    (second, third)
+}
+
+/// The first four dimensions of each of the points `indices`, Owen-scrambled by parts of its hash, in [0, 1).
+#[inline(always)]
+pub(super) fn scrambled_points<const N: usize>(indices: [u32; N], hashes: [u64; N]) -> [[f32; N]; 4] {
+    let (mut second, mut third) = ([0; N], [0; N]);
+    if N == 1 {
+        (second[0], third[0]) = dimensions_2_3_reversed(indices[0]);
+    } else {
+        (second, third) = dimensions_2_3_of_lanes(indices);
+    }
+    let mut numbers = [[0.0; N]; 4];
+    let [x, y, z, w] = &mut numbers;
+    for i in 0..N {
+        let (index, hash) = (indices[i], hashes[i]);
+        let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
+        x[i] = scrambled_unit(index, a as u32);
+        y[i] = scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32);
+        z[i] = scrambled_unit(second[i], b as u32);
+        w[i] = scrambled_unit(third[i], (b >> 32) as u32);
+    }
+    numbers
 }
 
 #[inline(always)]
@@ -64,10 +88,35 @@ fn scrambled_unit(reversed: u32, seed: u32) -> f32 {
 /// One kilobyte, which stays in the cache where larger tables would push out the scene.
 static HEX_DIGITS: [[u64; 16]; 8] = hex_digit_tables();
 
+/// By distance k: which digits of dimensions 2 and 3, reversed, depend on the digit of the index k places above.
+static DIAGONALS: [[u32; 2]; 32] = diagonals();
+
+/// Direction numbers of dimensions 2 and 3: the primitive polynomials x^2 + x + 1 and x^3 + x + 1 with the initial numbers of Joe and
+/// Kuo.
+const DIRECTION_NUMBERS: [[u32; 32]; 2] = [direction_numbers(2, 1, [1, 3, 0]), direction_numbers(3, 1, [1, 3, 1])];
+
+const fn diagonals() -> [[u32; 2]; 32] {
+    let mut diagonals = [[0; 2]; 32];
+    let mut bit = 0;
+    while bit < 32 {
+        let mut d = 0;
+        while d < 2 {
+            // A digit of a point depends on no digit of the index below it.
+            let column = DIRECTION_NUMBERS[d][bit].reverse_bits();
+            let mut k = 0;
+            while k <= bit {
+                diagonals[k][d] |= column & 1 << (bit - k);
+                k += 1;
+            }
+            d += 1;
+        }
+        bit += 1;
+    }
+    diagonals
+}
+
 const fn hex_digit_tables() -> [[u64; 16]; 8] {
-    // Primitive polynomials x^2 + x + 1 and x^3 + x + 1 with the initial numbers of Joe and Kuo.
-    let second = direction_numbers(2, 1, [1, 3, 0]);
-    let third = direction_numbers(3, 1, [1, 3, 1]);
+    let [second, third] = DIRECTION_NUMBERS;
     let mut tables = [[0; 16]; 8];
     let mut bit = 0;
     while bit < 32 {
@@ -140,6 +189,15 @@ mod tests {
         for index in (0..10_000_000_u32).step_by(9973).chain([u32::MAX]) {
             let sum = (0..32).filter(|j| index >> j & 1 == 1).fold(0, |x, j| x ^ v[j]);
             assert_eq!(dimension_1_reversed(index).reverse_bits(), sum);
+        }
+    }
+
+    #[test]
+    fn diagonals_give_what_the_tables_give() {
+        for index in (0..1 << 12).chain((0..1000_u32).map(|i| i.wrapping_mul(0x9e37_79b9))) {
+            let (second, third) = dimensions_2_3_of_lanes([index, !index]);
+            assert_eq!((second[0], third[0]), dimensions_2_3_reversed(index));
+            assert_eq!((second[1], third[1]), dimensions_2_3_reversed(!index));
         }
     }
 

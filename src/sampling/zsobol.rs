@@ -10,7 +10,7 @@
 //! samples), each with its own scrambling: that indices fit into 32 bits, and numbers do not depend on the resolution.
 
 use super::hash::{mix32, split_mix};
-use super::sobol::{scramble_reversed, scrambled_point};
+use super::sobol::{scramble_reversed, scrambled_points};
 
 /// Pixels along a tile are 2 to the power of this, at most.
 const MOST_LEVELS: u32 = 8;
@@ -86,15 +86,13 @@ pub(super) fn draw<const N: usize>(
             permuted[i] |= permute_digit(places[i] >> (2 * level) & 3, hash) << (2 * level);
         }
     }
-    let mut numbers = [[0.0; N]; 4];
-    let [x, y, z, w] = &mut numbers;
     let within = ((1_u64 << log2_samples) - 1) as u32;
     for i in 0..N {
         let seed = mix32((hashes[i] >> 32) as u32 ^ places[i].wrapping_mul(0x9e37_79b9));
         let index = scramble_reversed(reversed_indices[i], seed).reverse_bits() & within;
-        [x[i], y[i], z[i], w[i]] = scrambled_point(permuted[i] << log2_samples | index, hashes[i]);
+        permuted[i] = permuted[i] << log2_samples | index;
     }
-    numbers
+    scrambled_points(permuted, hashes)
 }
 
 #[cfg(test)]

@@ -30,6 +30,13 @@ impl CompiledSpectrum {
     pub fn sample(&self, wavelengths: &Wavelengths) -> SampledSpectrum {
         match &self.form {
             Form::Constant(lanes) => *lanes,
+            _ => self.sample_varying(wavelengths),
+        }
+    }
+
+    fn sample_varying(&self, wavelengths: &Wavelengths) -> SampledSpectrum {
+        match &self.form {
+            Form::Constant(lanes) => *lanes,
             Form::Sigmoid(polynomial) => polynomial.sample(wavelengths),
             Form::ScaledSigmoid(scale, polynomial) => polynomial.sample(wavelengths) * *scale,
             Form::Illuminant(scale, polynomial, light) => {

@@ -13,7 +13,7 @@ use crate::integrator::numbers::EventLanes;
 use crate::integrator::shadow::{Contribution, NO_NOTE};
 use crate::integrator::stage::PacketVertices;
 use crate::light::{ChosenLight, LightLanes, LightSampleLanes};
-use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, Vectorizer, offset_ray_origin};
+use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer, offset_ray_origin};
 use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic, warp};
 use crate::spectrum::{SampledSpectrum, SpectrumLanes};
 

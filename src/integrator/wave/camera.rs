@@ -138,7 +138,7 @@ impl Pixels {
 }
 
 /// A pixel sample, its camera ray, if one comes through the lenses, and how wide that is, from the numbers for film and lens.
-#[inline]
+#[inline(always)]
 fn camera_slot(
     scene: &Scene,
     view: &View,
