@@ -174,3 +174,22 @@ fn sums_of_the_greatest_values_do_not_overflow() {
     }
     assert_eq!(film.dropped_samples(), 3);
 }
+
+/// A medium that was defined, as converters write them, and that nothing was in, sent every path by way of the estimator for media, and
+/// other integrators refused the scene.
+#[test]
+fn media_that_nothing_is_in_do_not_count() {
+    let scene = |camera: &str, shape: &str| {
+        let text = format!(
+            "{camera} Camera \"perspective\" WorldBegin LightSource \"infinite\"\n\
+             MakeNamedMedium \"green\" \"string type\" \"homogeneous\"\n{shape} Shape \"sphere\""
+        );
+        Built::new(parse(&text), lucerna::accel::Backend::Bvh, ColorMode::Rgb).scene
+    };
+    assert!(!scene("", "").has_media());
+    assert!(!scene("", "MediumInterface \"\" \"\"").has_media());
+    assert!(scene("", "MediumInterface \"green\" \"\"").has_media());
+    assert!(scene("", "Material \"interface\"").has_media());
+    let camera = "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" MediumInterface \"\" \"air\"";
+    assert!(scene(camera, "").has_media());
+}

@@ -11,9 +11,11 @@ use crate::math::{Kernel, LANES, Lanes, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes,
 pub struct SurfaceLanes {
     vectorizer: Vectorizer,
     triangles: Triangles,
-    /// Whether the lane hit a triangle in world space: only then its surface is below.
+    /// Whether the lane hit a triangle in world space.
     is_triangle: [bool; LANES],
     surfaces: Surfaces,
+    /// Of lanes that hit something else.
+    others: [Option<SurfaceInteraction>; LANES],
 }
 
 /// What [`triangle::point`] and [`Corners::at`] are given.
@@ -51,34 +53,45 @@ impl SurfaceLanes {
     /// Computes what the rays that take part hit.
     #[inline]
     pub fn fill(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
+        self.is_triangle = [false; LANES];
+        let mut is_other = [false; LANES];
         for lane in 0..LANES {
-            let hit = hits.get(lane).and_then(|hit| world_mesh(world, hit));
-            self.is_triangle[lane] = hit.is_some();
-            if let Some((mesh, triangle)) = hit {
-                self.triangles.set(lane, mesh, triangle, rays.time[lane]);
+            let Some(hit) = hits.get(lane) else { continue };
+            match world_mesh(world, hit) {
+                Some((mesh, triangle)) => {
+                    self.is_triangle[lane] = true;
+                    self.triangles.set(lane, mesh, triangle, rays.time[lane]);
+                }
+                None => is_other[lane] = true,
             }
         }
-        let triangles = &self.triangles;
-        self.surfaces = self.vectorizer.run(Compute { rays, triangles });
+        if self.is_triangle != [false; LANES] {
+            let triangles = &self.triangles;
+            self.surfaces = self.vectorizer.run(Compute { rays, triangles });
+        }
+        if is_other == [false; LANES] {
+            return;
+        }
+        for lane in (0..LANES).filter(|&lane| is_other[lane]) {
+            let surface = hits.get(lane).map(|hit| world.interaction(&rays.get(lane), hit));
+            if let Some(surface) = &surface {
+                self.surfaces.set(lane, surface, rays.origin(lane));
+            }
+            self.others[lane] = surface;
+        }
     }
 
-    /// Whether the ray in `lane` hit a triangle in world space.
+    /// Where rays hit something; in other lanes anything.
     #[inline]
-    pub fn is_triangle(&self, lane: usize) -> bool {
-        self.is_triangle[lane]
-    }
-
-    /// Where rays hit triangles in world space; in other lanes anything.
-    #[inline]
-    pub fn triangles(&self) -> &Surfaces {
+    pub fn all(&self) -> &Surfaces {
         &self.surfaces
     }
 
     /// What `ray`, which was in `lane`, `hit`.
     #[inline]
-    pub fn get(&self, world: &World, lane: usize, ray: &Ray, hit: Hit) -> SurfaceInteraction {
-        if !self.is_triangle[lane] {
-            return world.interaction(ray, hit);
+    pub fn get(&self, lane: usize, ray: &Ray, hit: Hit) -> SurfaceInteraction {
+        if let (false, Some(surface)) = (self.is_triangle[lane], &self.others[lane]) {
+            return *surface;
         }
         let surfaces = &self.surfaces;
         SurfaceInteraction {
@@ -104,6 +117,16 @@ fn world_mesh(world: &World, hit: Hit) -> Option<(&TriangleMesh, usize)> {
     match &world.geometry(hit.geometry).shape {
         Shape::Mesh(mesh) if hit.instance.is_none() => Some((mesh, hit.primitive.index())),
         _ => None,
+    }
+}
+
+impl Surfaces {
+    fn set(&mut self, lane: usize, surface: &SurfaceInteraction, origin: Vec3) {
+        self.p.set(lane, surface.p);
+        self.error[lane] = surface.error;
+        self.ng.set(lane, surface.ng);
+        self.ns.set(lane, surface.ns);
+        self.distance[lane] = surface.p.distance(origin);
     }
 }
 
@@ -267,7 +290,7 @@ mod tests {
             lanes.fill(&world, &rays, &hits);
             for lane in 0..LANES - 1 {
                 let (ray, hit) = (rays.get(lane), hits.get(lane).unwrap());
-                let (together, alone) = (lanes.get(&world, lane, &ray, hit), world.interaction(&ray, hit));
+                let (together, alone) = (lanes.get(lane, &ray, hit), world.interaction(&ray, hit));
                 assert_eq!(format!("{together:?}"), format!("{alone:?}"));
                 assert_eq!(
                     together.hit,

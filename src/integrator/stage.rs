@@ -146,19 +146,19 @@ pub(super) struct PacketVertices<'a, S> {
 }
 
 impl<S> PacketVertices<'_, S> {
-    /// The triangle in world space that a lane `hit`, unless its ray may have passed it.
+    /// The surface that a lane `hit`, unless its ray may have passed the front of it.
     #[inline]
-    pub fn surface(&self, scene: &Scene, lane: usize, hit: Hit) -> SurfaceInteraction {
+    pub fn surface(&self, lane: usize, hit: Hit) -> SurfaceInteraction {
         SurfaceInteraction {
             footprint: self.cone(lane).width,
-            ..self.surfaces.get(scene.world(), lane, &self.rays.get(lane), hit)
+            ..self.surfaces.get(lane, &self.rays.get(lane), hit)
         }
     }
 
-    /// The cone of the ray from the triangle on that a lane hit.
+    /// The cone of the ray from the surface on that a lane hit, unless its ray may have passed the front of it.
     #[inline]
     pub fn cone(&self, lane: usize) -> RayCone {
-        self.lanes[lane].cone.after(self.surfaces.triangles().distance[lane])
+        self.lanes[lane].cone.after(self.surfaces.all().distance[lane])
     }
 }
 

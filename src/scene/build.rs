@@ -78,9 +78,13 @@ impl Scene {
             return Err(Error::Scene(builder.problems));
         }
         let materials = compile_materials(&desc.materials, &mut builder.textures);
-        let media = desc
+        // Media that are defined and nowhere used, as files from converters have them, must not slow a render down.
+        let has_medium = |surface: &Surface| surface.media.is_some_and(|media| media.is_any());
+        let are_used = builder.surfaces.iter().any(has_medium) || desc.views.iter().any(|v| v.camera.medium.is_some());
+        let media: Vec<_> = desc
             .media
             .iter()
+            .filter(|_| are_used)
             .map(|medium| media::compile(medium, spectra))
             .collect();
         let is_interface = |surface: &Surface| matches!(materials[surface.material as usize], Material::Interface);
@@ -91,11 +95,7 @@ impl Scene {
         let accel = Arc::from(accel::build(options.backend, &world, &options.build)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
-        let in_media: &[Light] = if desc.media.is_empty() {
-            &[]
-        } else {
-            &builder.lights.lights
-        };
+        let in_media: &[Light] = if media.is_empty() { &[] } else { &builder.lights.lights };
         let point_sampler = LightSampler::points(in_media, &bounds);
         let light_sampler = match desc.integrator.light_sampler {
             LightSamplerKind::Bvh => LightSampler::bvh(&builder.lights.lights, &bounds),

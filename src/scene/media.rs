@@ -13,6 +13,13 @@ pub(super) struct MediumInterface {
     pub exterior: Option<MediumId>,
 }
 
+impl MediumInterface {
+    /// Whether there is a medium on either side.
+    pub fn is_any(&self) -> bool {
+        self.interior.is_some() || self.exterior.is_some()
+    }
+}
+
 /// The medium of a description's number.
 pub(super) fn id(id: desc::MediumId) -> MediumId {
     MediumId(id.0)

@@ -143,7 +143,7 @@ impl Scene {
         &self.media[id.index()]
     }
 
-    /// Whether there are any media, or boundaries between them.
+    /// Whether there are any media that something is in, or boundaries between media.
     pub fn has_media(&self) -> bool {
         !self.media.is_empty() || self.has_interfaces
     }

@@ -1,4 +1,4 @@
-//! The commonest scattering event, of eight paths at once: on triangles at rest in the world that are Lambertian, where nothing is emitted.
+//! The commonest scattering event, of eight paths at once: by Lambertian surfaces that do not emit.
 //! The bits are those of [`PathIntegrator::scatter`], which takes the other paths.
 
 use std::f32::consts::FRAC_1_PI;
@@ -75,9 +75,10 @@ impl PathIntegrator {
             lights,
             paths,
         } = &mut *stage.memory;
+        let surfaces = packet.surfaces.all();
         let mut chosen: [Option<ChosenLight<'_>>; LANES] = [None; LANES];
         for (i, lane) in packet.lanes.iter().enumerate() {
-            if lane.slot == NO_SLOT || !packet.rays.is_active(i) || !packet.surfaces.is_triangle(i) {
+            if lane.slot == NO_SLOT || !packet.rays.is_active(i) {
                 continue;
             }
             let Some(hit) = packet.hits.get(i) else { continue };
@@ -87,24 +88,20 @@ impl PathIntegrator {
             let lambda = &stage.slots[lane.slot as usize].lambda;
             let albedo = match reflectance.constant() {
                 Some(spectrum) => spectrum.sample(lambda),
-                None => reflectance.reflectance_at(&packet.surface(scene, i, hit), lambda),
+                None => reflectance.reflectance_at(&packet.surface(i, hit), lambda),
             };
             taken[i] = true;
             paths.albedo.set(i, albedo);
             paths.beta.set(i, lane.beta);
             paths.eta_scale[i] = lane.eta_scale;
-            let triangles = packet.surfaces.triangles();
-            let which = packet.numbers.which_light()[i];
-            let light = scene
-                .light_sampler()
-                .sample(triangles.p.get(i), triangles.ns.get(i), which);
+            let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
+            let light = scene.light_sampler().sample(p, n, packet.numbers.which_light()[i]);
             paths.pmf[i] = light.map_or(1.0, |light| light.pmf);
             chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
         }
         if taken == [false; LANES] {
             return taken;
         }
-        let surfaces = packet.surfaces.triangles();
         let lights = lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
         let scattered = vectorizer.run(Scatter {
             rays: packet.rays,
@@ -142,7 +139,7 @@ impl Scattered {
         if !self.goes_on[i] {
             return;
         }
-        let surfaces = packet.surfaces.triangles();
+        let surfaces = packet.surfaces.all();
         let next = Lane {
             beta: self.beta.get(i),
             cone: packet.cone(i),

@@ -217,7 +217,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                 let (mut surface, mut cone) = (None, lane.cone);
                 if let Some(hit) = hits.get(i) {
                     let behind = scene.interaction_behind(ray, hit, hits.t[i]);
-                    si = behind.unwrap_or_else(|| surfaces.get(scene.world(), i, ray, hit));
+                    si = behind.unwrap_or_else(|| surfaces.get(i, ray, hit));
                     cone = cone.after(si.p.distance(ray.origin));
                     si.footprint = cone.width;
                     surface = Some(&si);
