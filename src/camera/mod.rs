@@ -2,6 +2,7 @@
 
 mod aperture;
 mod importance;
+mod lanes;
 mod planar;
 mod pose;
 mod realistic;
@@ -10,6 +11,7 @@ mod spherical;
 use std::sync::Arc;
 
 pub use self::importance::{CameraConnection, CameraDensity, CameraRay, RasterDomain};
+pub use self::lanes::CameraLanes;
 pub use self::realistic::{Realistic, RealisticSpec};
 
 use self::planar::Planar;
@@ -123,13 +125,13 @@ impl Camera {
 
     /// The ray of a sample, with a direction of unit length, and its [importance](Camera::importance). `None` if nothing comes through
     /// the lenses.
-    #[inline(always)]
+    #[inline]
     pub fn generate_ray(&self, sample: &CameraSample) -> Option<(Ray, f32)> {
         self.ray_at(sample, self.scene_time(sample.time))
     }
 
     /// [`Camera::generate_ray`], at a scene time whatever the time of the sample.
-    #[inline(always)]
+    #[inline]
     pub fn ray_at(&self, sample: &CameraSample, time: f32) -> Option<(Ray, f32)> {
         let (origin, direction, importance) = match &self.eye {
             Eye::Planar(planar) => {

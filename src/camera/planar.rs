@@ -18,7 +18,7 @@ pub(super) struct Planar {
     pub focal_distance: f32,
     pub aperture: Aperture,
     /// The pixel's area on the screen plane, if a pixel is an irradiance.
-    irradiance_area: Option<f32>,
+    pub irradiance_area: Option<f32>,
 }
 
 impl Planar {
@@ -46,7 +46,7 @@ impl Planar {
     }
 
     /// Where the ray of a sample starts, on the near plane, and its direction, with z = 1.
-    #[inline]
+    #[inline(always)]
     pub fn local_start(&self, sample: &CameraSample) -> (Vec3, Vec3) {
         let (origin, direction) = self.local_ray(sample);
         (origin + direction * self.near_clip, direction)
@@ -76,7 +76,7 @@ impl Planar {
     }
 
     /// Origin, on the lens, and direction, with z = 1, in camera space.
-    #[inline]
+    #[inline(always)]
     fn local_ray(&self, sample: &CameraSample) -> (Vec3, Vec3) {
         let screen = self.screen_origin + sample.film * self.screen_per_pixel;
         let (mut origin, mut direction) = if self.perspective {
@@ -105,7 +105,7 @@ impl Planar {
     }
 
     /// See [`super::Camera::ray_cone`].
-    #[inline]
+    #[inline(always)]
     pub fn ray_cone(&self, film: Vec2, scale: f32) -> RayCone {
         let pixel = scale * self.pixel_area().sqrt();
         if !self.perspective {

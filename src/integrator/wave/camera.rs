@@ -8,16 +8,16 @@ use std::ops::Range;
 
 use super::Wave;
 use crate::accel::RayKind;
-use crate::camera::CameraSample;
-use crate::film::{PixelRect, TILE_SIZE};
+use crate::camera::{CameraLanes, CameraSample};
+use crate::film::{FilterSample, PixelRect, TILE_SIZE};
 use crate::geometry::{LANES, Ray, RayCone};
 use crate::integrator::lane::{Batch, Lane, NO_SLOT, Slot};
 use crate::integrator::numbers::{DETECTOR_GROUP, FILM_GROUP};
 use crate::integrator::stage::{Estimator, Moment};
 use crate::material::TransportMode;
-use crate::math::Vec2;
+use crate::math::{Lanes, Vec2, Vec2Lanes, VectorLanes, Vectorizer};
 use crate::sampling::SampleStream;
-use crate::scene::{Scene, View};
+use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
 
 /// Columns and rows of the block of pixels whose camera rays share a packet.
@@ -66,6 +66,7 @@ impl<E: Estimator> Wave<'_, E> {
         });
         let film = SampleStream::draw4_lanes(self.vectorizer, &streams, FILM_GROUP);
         let detector = SampleStream::draw4_lanes(self.vectorizer, &streams, DETECTOR_GROUP);
+        let starts = Starts::new(self.view, self.vectorizer, &pixels, &film);
         let shared_moment = self.estimator.moment();
         for (i, &[x, y]) in pixels.iter().enumerate() {
             let mut ray = Ray::INACTIVE;
@@ -86,18 +87,28 @@ impl<E: Estimator> Wave<'_, E> {
                     wavelength: detector[0][i],
                     time: detector[1][i],
                 });
-                let numbers = film.map(|numbers| numbers[i]);
-                let (mut slot, camera_ray, cone) = camera_slot(self.scene, self.view, [x, y], sample, numbers, moment);
-                lane.cone = cone;
-                match camera_ray.filter(|_| is_traced) {
-                    // A light path only, or nothing comes through the lenses.
-                    None => {}
-                    Some(camera_ray) if camera_ray.is_valid() => {
-                        ray = camera_ray;
+                let time = self.view.camera.scene_time(moment.time);
+                let start = starts.get(self.view, i, time);
+                let mut slot = Slot {
+                    pixel: [x, y],
+                    sample,
+                    filter_weight: starts.filters[i].weight,
+                    importance: start.importance,
+                    time,
+                    lambda: moment.wavelengths(self.scene.color()),
+                    l: SampledSpectrum::ZERO,
+                    broken: false,
+                };
+                lane.cone = start.cone;
+                // Else it is a light path only, or nothing comes through the lenses.
+                if is_traced && start.exists {
+                    if start.ray.is_valid() {
+                        ray = start.ray;
                         lane.state = self.estimator.camera_state(self.view, &ray);
                         self.stats.camera_rays += 1;
+                    } else {
+                        slot.broken = true;
                     }
-                    Some(_) => slot.broken = true,
                 }
                 if is_wanted {
                     lane.slot = self.slots.len() as u32;
@@ -137,34 +148,69 @@ impl Pixels {
     }
 }
 
-/// A pixel sample, its camera ray, if one comes through the lenses, and how wide that is, from the numbers for film and lens.
-#[inline(always)]
-fn camera_slot(
-    scene: &Scene,
-    view: &View,
-    pixel: [u32; 2],
-    sample: u32,
-    [film_x, film_y, lens_x, lens_y]: [f32; 4],
-    moment: Moment,
-) -> (Slot, Option<Ray>, RayCone) {
-    let filter = view.filter.sample(Vec2::new(film_x, film_y));
-    let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-    let camera_sample = CameraSample {
-        film: center + filter.offset,
-        lens: Vec2::new(lens_x, lens_y),
-        time: moment.time,
-    };
-    let start = view.camera.generate_ray(&camera_sample);
-    let cone = view.camera.ray_cone(camera_sample.film, view.detail_scale());
-    let slot = Slot {
-        pixel,
-        sample,
-        filter_weight: filter.weight,
-        importance: start.map_or(0.0, |(_, importance)| importance),
-        time: view.camera.scene_time(moment.time),
-        lambda: moment.wavelengths(scene.color()),
-        l: SampledSpectrum::ZERO,
-        broken: false,
-    };
-    (slot, start.map(|(ray, _)| ray), cone)
+/// A camera ray.
+struct Start {
+    /// Whether there is one: whether it comes through the lenses.
+    exists: bool,
+    ray: Ray,
+    importance: f32,
+    /// How wide it is.
+    cone: RayCone,
+}
+
+/// The camera rays of a block.
+struct Starts {
+    filters: [FilterSample; LANES],
+    film: Vec2Lanes,
+    lens: Vec2Lanes,
+    /// All of them, if the camera knows them together.
+    rays: Option<CameraLanes>,
+}
+
+impl Starts {
+    /// From the numbers for film and lens of each pixel.
+    #[inline]
+    fn new(view: &View, vectorizer: Vectorizer, pixels: &[[u32; 2]; LANES], numbers: &[Lanes; 4]) -> Self {
+        let [film_x, film_y, lens_x, lens_y] = numbers;
+        let filters = std::array::from_fn(|i| view.filter.sample(Vec2::new(film_x[i], film_y[i])));
+        let (mut film, mut lens) = (Vec2Lanes::default(), Vec2Lanes::default());
+        for (i, [x, y]) in pixels.iter().enumerate() {
+            let center = Vec2::new(*x as f32 + 0.5, *y as f32 + 0.5);
+            let FilterSample { offset, .. } = filters[i];
+            film.set(i, center + offset);
+            lens.set(i, Vec2::new(lens_x[i], lens_y[i]));
+        }
+        Self {
+            rays: view.camera.rays(vectorizer, &film, &lens, view.detail_scale()),
+            filters,
+            film,
+            lens,
+        }
+    }
+
+    /// That of a lane.
+    #[inline]
+    fn get(&self, view: &View, lane: usize, time: f32) -> Start {
+        if let Some(rays) = &self.rays {
+            return Start {
+                exists: true,
+                ray: rays.ray(lane, time),
+                importance: 1.0,
+                cone: rays.cone(lane),
+            };
+        }
+        let sample = CameraSample {
+            film: self.film.get(lane),
+            lens: self.lens.get(lane),
+            time: 0.0,
+        };
+        let start = view.camera.ray_at(&sample, time);
+        let (ray, importance) = start.unwrap_or((Ray::INACTIVE, 0.0));
+        Start {
+            exists: start.is_some(),
+            ray,
+            importance,
+            cone: view.camera.ray_cone(sample.film, view.detail_scale()),
+        }
+    }
 }
