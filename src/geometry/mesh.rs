@@ -36,13 +36,13 @@ impl TriangleMesh {
         })
     }
 
-    /// With shading normals, one a vertex, of any length.
+    /// With shading normals, one a vertex, of any length; or with none.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Self, MeshError> {
         self.attributes.set_normals(normals, self.vertex_count())?;
         Ok(self)
     }
 
-    /// With texture coordinates, one a vertex.
+    /// With texture coordinates, one a vertex; or with none.
     pub fn with_uvs(mut self, uvs: Vec<Vec2>) -> Result<Self, MeshError> {
         self.attributes.set_uvs(uvs, self.vertex_count())?;
         Ok(self)

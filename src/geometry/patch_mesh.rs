@@ -32,19 +32,19 @@ impl PatchMesh {
         })
     }
 
-    /// With shading normals, one a vertex, of any length.
+    /// With shading normals, one a vertex, of any length; or with none.
     ///
     /// # Errors
-    /// If there is not one for each vertex.
+    /// If there are some, but not one for each vertex.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Self, MeshError> {
         self.attributes.set_normals(normals, self.positions.len())?;
         Ok(self)
     }
 
-    /// With texture coordinates, one a vertex; without, they are the parameters u and v.
+    /// With texture coordinates, one a vertex; or with none: then they are the parameters u and v.
     ///
     /// # Errors
-    /// If there is not one for each vertex.
+    /// If there are some, but not one for each vertex.
     pub fn with_uvs(mut self, uvs: Vec<Vec2>) -> Result<Self, MeshError> {
         self.attributes.set_uvs(uvs, self.positions.len())?;
         Ok(self)

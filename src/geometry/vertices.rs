@@ -41,17 +41,17 @@ pub(super) struct Attributes {
 }
 
 impl Attributes {
-    /// Takes shading normals, one for each of so many vertices.
+    /// Takes shading normals, one for each of so many vertices, or none at all.
     pub fn set_normals(&mut self, normals: Vec<Vec3>, vertices: usize) -> Result<(), MeshError> {
         check_count("normals", normals.len(), vertices)?;
-        self.normals = Some(normals);
+        self.normals = Some(normals).filter(|normals| !normals.is_empty());
         Ok(())
     }
 
-    /// Takes texture coordinates, one for each of so many vertices.
+    /// Takes texture coordinates, one for each of so many vertices, or none at all.
     pub fn set_uvs(&mut self, uvs: Vec<Vec2>, vertices: usize) -> Result<(), MeshError> {
         check_count("texture coordinates", uvs.len(), vertices)?;
-        self.uvs = Some(uvs);
+        self.uvs = Some(uvs).filter(|uvs| !uvs.is_empty());
         Ok(())
     }
 
@@ -63,7 +63,7 @@ impl Attributes {
 }
 
 fn check_count(what: &'static str, count: usize, vertices: usize) -> Result<(), MeshError> {
-    if count == vertices {
+    if count == 0 || count == vertices {
         Ok(())
     } else {
         Err(MeshError::AttributeCount { what, count, vertices })
