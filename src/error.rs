@@ -96,6 +96,11 @@ impl SourceMap {
         &self.files[index as usize].0
     }
 
+    /// The paths of all files.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|(path, _)| &**path)
+    }
+
     /// A diagnostic at `span`, with the line it points into.
     pub fn diagnostic(&self, severity: Severity, span: Span, message: String) -> Diagnostic {
         let (path, text) = &self.files[span.file as usize];

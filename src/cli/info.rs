@@ -206,7 +206,11 @@ impl std::fmt::Display for SceneInfo {
             "  instances   {}, {} primitives in all",
             self.instances, self.instanced_primitives
         )?;
-        writeln!(f, "  bounds      {:?} to {:?}", self.bounds_min, self.bounds_max)?;
+        if self.bounds_min[0] <= self.bounds_max[0] {
+            writeln!(f, "  bounds      {:?} to {:?}", self.bounds_min, self.bounds_max)?;
+        } else {
+            writeln!(f, "  bounds      none")?;
+        }
         writeln!(f, "  lights      {}", list(&self.lights))?;
         writeln!(f, "  materials   {}", list(&self.materials))?;
         writeln!(

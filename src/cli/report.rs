@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::stats::Statistics;
 use crate::error::{Diagnostic, Error, Result};
-use crate::integrator::Progress;
+use crate::integrator::{Progress, RenderStats};
 
 /// Where messages go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,25 +87,40 @@ impl Reporter<'_> {
         ));
     }
 
-    /// Hears how far the render of this picture is.
-    pub fn progress(&self) -> PictureProgress<'_> {
+    /// Says which samples a render dropped, and by what `options` beside seed, pixel and sample they can be rendered again.
+    pub fn dropped(&self, stats: &RenderStats, seed: u64, options: &str) {
+        if stats.dropped_samples == 0 {
+            return;
+        }
+        self.say(&format!(
+            "warning: {} samples were not finite or negative and count as black; to look into one:",
+            stats.dropped_samples
+        ));
+        for dropped in stats.dropped.iter().take(4) {
+            let [x, y] = dropped.pixel;
+            self.say(&format!(
+                "  lucerna render {} --seed {seed} --pixel {x},{y} --sample {} {options}",
+                self.scene.display(),
+                dropped.sample
+            ));
+        }
+    }
+
+    /// Hears how far the render of this picture is, or of one of its layers that is rendered by itself.
+    pub fn progress(&self, layer: Option<&'static str>) -> PictureProgress<'_> {
         let bar = (self.channel == Channel::Person && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
             let style =
                 ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed_precise}  {prefix} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.set_message(
-                self.scene
-                    .file_stem()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-                    .into_owned(),
-            );
+            let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
+            bar.set_message(layer.map_or_else(|| stem.to_string(), |layer| format!("{stem}, {layer}")));
             bar.set_prefix("?");
             bar
         });
         PictureProgress {
             reporter: self,
+            layer,
             bar,
             start: Instant::now(),
             last: Mutex::new(None),
@@ -119,6 +134,7 @@ const INTERVAL: Duration = Duration::from_millis(250);
 /// The progress of one picture.
 pub struct PictureProgress<'a> {
     reporter: &'a Reporter<'a>,
+    layer: Option<&'static str>,
     bar: Option<ProgressBar>,
     start: Instant,
     last: Mutex<Option<Instant>>,
@@ -153,8 +169,11 @@ impl Progress for PictureProgress<'_> {
                 bar.set_position(done);
             }
             None => {
-                self.reporter
-                    .event(json!({"event": "progress", "done": fraction, "seconds_left": seconds_left}));
+                let mut event = json!({"event": "progress", "done": fraction, "seconds_left": seconds_left});
+                if let Some(layer) = self.layer {
+                    event["layer"] = json!(layer);
+                }
+                self.reporter.event(event);
             }
         }
     }

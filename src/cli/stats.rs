@@ -57,6 +57,9 @@ pub struct Statistics {
     /// What the integrator's photons did, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photons: Option<Photons>,
+    /// The renders from one side alone, if strategies were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub one_sided: Vec<OneSided>,
     /// Samples that counted as black because they were not finite or negative.
     pub dropped_samples: u64,
 }
@@ -102,6 +105,34 @@ pub struct Fastest {
     pub mrays: f64,
     /// Thread seconds for the rays of the render.
     pub seconds: f64,
+}
+
+/// A render of what paths from one side alone find.
+#[derive(Clone, Debug, Serialize)]
+pub struct OneSided {
+    /// Its layer: `eye-only` or `light-only`.
+    pub layer: &'static str,
+    /// Its name on the command line.
+    pub integrator: &'static str,
+    /// Rendering alone.
+    pub render_seconds: f64,
+    /// All rays.
+    pub rays: u64,
+    /// Samples that counted as black because they were not finite or negative.
+    pub dropped_samples: u64,
+}
+
+impl OneSided {
+    /// That of a layer.
+    pub fn of(layer: &'static str, integrator: &'static str, stats: &RenderStats) -> Self {
+        Self {
+            layer,
+            integrator,
+            render_seconds: stats.render_time.as_secs_f64(),
+            rays: stats.rays(),
+            dropped_samples: stats.dropped_samples,
+        }
+    }
 }
 
 /// Photons of all passes.

@@ -5,6 +5,8 @@
 //! place.
 
 use std::fmt::Write;
+use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -63,6 +65,11 @@ struct Part {
 }
 
 fn read_ply(path: &Path) -> Result<Subject> {
+    let unreadable = |source| Error::io("read", path, source);
+    let metadata = File::open(path).and_then(|file| file.metadata()).map_err(unreadable)?;
+    if metadata.is_dir() {
+        return Err(unreadable(io::ErrorKind::IsADirectory.into()));
+    }
     let file = ply::load(path).map_err(|message| {
         let place = Diagnostic::new(Severity::Error, path, &[], 0..0, message);
         Error::Scene(vec![place])

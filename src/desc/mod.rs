@@ -205,9 +205,15 @@ const EXTENSIONS: &str = ".pbrt (pbrt-v4), .xml (Mitsuba 3), .ply or .obj; .pbrt
 /// # Errors
 ///
 /// [`Error::Scene`] with every problem found (at most some 50), in file order, [`Error::Io`] if `path` itself cannot be read,
-/// [`Error::Usage`] if its extension is not known.
+/// [`Error::Usage`] if its extension is not known, or it is told parameters and is none of Mitsuba's.
 pub fn load(path: &Path, options: &ParseOptions) -> Result<SceneDesc> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    if let (Some((parameter, _)), false) = (options.defines.first(), name.ends_with(".xml")) {
+        return Err(Error::Usage(format!(
+            "{}: parameters like {parameter} are for scenes of Mitsuba (.xml); this one has none",
+            path.display()
+        )));
+    }
     let mut scene = if name.ends_with(".pbrt") || name.ends_with(".pbrt.gz") {
         pbrt::load(path, options)
     } else if name.ends_with(".xml") {

@@ -160,7 +160,12 @@ impl Report {
             && forgivable > 0
             && let Some(last) = errors.last_mut()
         {
-            let advice = format!("{forgivable} of these {count} errors are warnings with --lenient");
+            let those = if forgivable == 1 {
+                "is a warning"
+            } else {
+                "are warnings"
+            };
+            let advice = format!("{forgivable} of these {count} errors {those} with --lenient");
             last.help = Some(
                 last.help
                     .take()

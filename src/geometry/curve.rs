@@ -12,9 +12,10 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 pub use self::facing::FacingCurves;
 
+use super::placement::Placement;
 use super::shape::LineHits;
 use super::surface::LocalSurface;
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DQuat, DVec2, DVec3, Vec2, Vec3};
+use crate::math::{Bounds3, DAffine3, DQuat, DVec2, DVec3, Vec2, Vec3};
 
 /// How a curve's width lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,9 +45,7 @@ pub struct CurveSet {
     segments: Vec<CurveSegment>,
     kind: CurveKind,
     depth: u32,
-    world_from_object: DAffine3,
-    object_from_world: DAffine3,
-    flip_normal: bool,
+    placement: Placement,
 }
 
 /// Where a ray meets a curve.
@@ -115,7 +114,7 @@ impl CurveSet {
     /// anything is not finite.
     pub fn new(segments: Vec<CurveSegment>, kind: CurveKind, depth: u32, world_from_object: DAffine3) -> Option<Self> {
         const MOST: usize = 1 << 30;
-        let object_from_world = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
+        let placement = Placement::new(world_from_object)?;
         let is_finite = |s: &CurveSegment| {
             s.points.iter().chain(&s.normals).all(|v| v.is_finite()) && s.widths.iter().all(|w| w.is_finite())
         };
@@ -127,16 +126,14 @@ impl CurveSet {
             segments,
             kind,
             depth: depth.unwrap_or(0),
-            world_from_object,
-            object_from_world,
-            flip_normal: false,
+            placement,
         })
     }
 
     /// With the geometric normal on the other side.
     #[must_use]
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
-        self.flip_normal = flip;
+        self.placement.flip_normal = flip;
         self
     }
 
@@ -169,19 +166,7 @@ impl CurveSet {
         let (segment, u) = self.part(primitive);
         let points = bezier::between(&segment.points.map(Vec3::as_dvec3), u);
         let half = 0.5 * u.map(|u| width_at(segment, u)).into_iter().fold(0.0, f64::max);
-        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let m = &self.world_from_object;
-        let rows = m.matrix3.transpose();
-        let margin = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()) * half;
-        for p in points {
-            let p = m.transform_point3(p);
-            (min, max) = (min.min(p - margin), max.max(p + margin));
-        }
-        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
-        Bounds3 {
-            min: outward(min, f32::next_down),
-            max: outward(max, f32::next_up),
-        }
+        self.placement.box_around(points.map(|p| (p, half)))
     }
 
     /// Where a ray meets a primitive in front of its origin: the two nearest places, if it is so twisted that there are more.
@@ -192,8 +177,7 @@ impl CurveSet {
     }
 
     fn hits(&self, primitive: usize, origin: DVec3, direction: DVec3) -> [Option<CurveHit>; 2] {
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         let (segment, u) = self.part(primitive);
         let points = bezier::between(&segment.points.map(Vec3::as_dvec3), u);
         let frame = RayFrame::new(o, d, points[3] - points[0]);
@@ -215,8 +199,7 @@ impl CurveSet {
     pub(super) fn surface(&self, primitive: usize, origin: DVec3, direction: DVec3, tnear: f64) -> LocalSurface {
         let hits = self.hits(primitive, origin, direction);
         let found = hits.iter().flatten().find(|hit| hit.t >= tnear).or(hits[0].as_ref());
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         let (segment, range) = self.part(primitive);
         let points = segment.points.map(Vec3::as_dvec3);
         let frame = RayFrame::new(o, d, points[3] - points[0]);
@@ -238,17 +221,20 @@ impl CurveSet {
             }
         };
         let normal = dpdu.cross(dpdv).try_normalize().unwrap_or(frame.z);
-        let ng = (self.object_from_world.matrix3.transpose() * normal).normalize();
-        let ng = if self.flip_normal { -ng } else { ng };
-        let to_world = |v: DVec3| self.world_from_object.transform_vector3(v).as_vec3();
+        let ng = self.placement.normal(normal);
         LocalSurface {
             p: origin + direction * hit.t,
             // A ray that leaves must not meet the curve again, which turns to face it; at the rim of a cylinder its normal leads across.
-            error: 1.5 * self.world_from_object.transform_vector3(frame.y * hit.width).length(),
+            error: 1.5
+                * self
+                    .placement
+                    .world_from_object
+                    .transform_vector3(frame.y * hit.width)
+                    .length(),
             ng,
             ns: ng.as_vec3(),
-            dpdu: to_world(dpdu),
-            dpdv: to_world(dpdv),
+            dpdu: self.placement.vector(dpdu),
+            dpdv: self.placement.vector(dpdv),
             uv: hit.uv.as_vec2(),
             barycentrics: Vec2::ZERO,
         }

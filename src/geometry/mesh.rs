@@ -1,6 +1,7 @@
 //! Indexed triangle meshes, with vertices that may move.
 
 use super::triangle::Corners;
+use super::vertices::{Attributes, MeshError, check_faces, check_positions};
 use crate::math::{Bounds3, Vec2, Vec3};
 
 /// What stands for the normals of a triangle's corners in a mesh without any.
@@ -15,40 +16,8 @@ pub struct TriangleMesh {
     /// One array a time step, each with one vertex more than the mesh has: Embree reads 16 bytes at the last one.
     positions: Vec<Vec<Vec3>>,
     indices: Vec<[u32; 3]>,
-    normals: Option<Vec<Vec3>>,
-    uvs: Option<Vec<Vec2>>,
+    attributes: Attributes,
     flip_normal: bool,
-}
-
-/// Why arrays do not make a mesh.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MeshError {
-    /// No time step, or none with the same number of vertices as the first.
-    #[error("every time step must have as many vertices as the first, and there must be one")]
-    TimeSteps,
-    /// An index beyond the vertices.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices}")]
-    IndexOutOfRange {
-        /// The triangle.
-        triangle: usize,
-        /// The vertex it names.
-        vertex: u32,
-        /// How many there are.
-        vertices: usize,
-    },
-    /// A vertex is NaN or infinite.
-    #[error("vertex {0} is not finite")]
-    NotFinite(usize),
-    /// Normals or texture coordinates do not match the vertices.
-    #[error("there are {count} {what} for {vertices} vertices")]
-    AttributeCount {
-        /// `normals` or `texture coordinates`.
-        what: &'static str,
-        /// How many there are.
-        count: usize,
-        /// How many there should be.
-        vertices: usize,
-    },
 }
 
 impl TriangleMesh {
@@ -59,41 +28,28 @@ impl TriangleMesh {
             if step.len() != vertices {
                 return Err(MeshError::TimeSteps);
             }
-            if let Some(bad) = step.iter().position(|p| !p.is_finite()) {
-                return Err(MeshError::NotFinite(bad));
-            }
+            check_positions(step)?;
             step.reserve_exact(1);
             step.push(Vec3::ZERO);
         }
-        for (triangle, corners) in indices.iter().enumerate() {
-            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices) {
-                return Err(MeshError::IndexOutOfRange {
-                    triangle,
-                    vertex,
-                    vertices,
-                });
-            }
-        }
+        check_faces(&indices, vertices)?;
         Ok(Self {
             positions,
             indices,
-            normals: None,
-            uvs: None,
+            attributes: Attributes::default(),
             flip_normal: false,
         })
     }
 
-    /// With shading normals, one a vertex, of any length.
+    /// With shading normals, one a vertex, of any length; or with none.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Self, MeshError> {
-        self.check_count("normals", normals.len())?;
-        self.normals = Some(normals);
+        self.attributes.set_normals(normals, self.vertex_count())?;
         Ok(self)
     }
 
-    /// With texture coordinates, one a vertex.
+    /// With texture coordinates, one a vertex; or with none.
     pub fn with_uvs(mut self, uvs: Vec<Vec2>) -> Result<Self, MeshError> {
-        self.check_count("texture coordinates", uvs.len())?;
-        self.uvs = Some(uvs);
+        self.attributes.set_uvs(uvs, self.vertex_count())?;
         Ok(self)
     }
 
@@ -102,15 +58,6 @@ impl TriangleMesh {
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
         self.flip_normal = flip;
         self
-    }
-
-    fn check_count(&self, what: &'static str, count: usize) -> Result<(), MeshError> {
-        let vertices = self.vertex_count();
-        if count == vertices {
-            Ok(())
-        } else {
-            Err(MeshError::AttributeCount { what, count, vertices })
-        }
     }
 
     /// Number of vertices.
@@ -151,12 +98,12 @@ impl TriangleMesh {
 
     /// Shading normals, one a vertex.
     pub fn normals(&self) -> Option<&[Vec3]> {
-        self.normals.as_deref()
+        self.attributes.normals.as_deref()
     }
 
     /// Texture coordinates, one a vertex.
     pub fn uvs(&self) -> Option<&[Vec2]> {
-        self.uvs.as_deref()
+        self.attributes.uvs.as_deref()
     }
 
     /// Whether the geometric normal is on the clockwise side.
@@ -188,11 +135,11 @@ impl TriangleMesh {
     pub(super) fn corners(&self, triangle: usize) -> Corners {
         let [a, b, c] = self.indices[triangle].map(|v| v as usize);
         Corners {
-            normals: match &self.normals {
+            normals: match self.normals() {
                 Some(normals) => [normals[a], normals[b], normals[c]],
                 None => NO_NORMALS,
             },
-            uvs: match &self.uvs {
+            uvs: match self.uvs() {
                 Some(uvs) => [uvs[a], uvs[b], uvs[c]],
                 None => PLAIN_UVS,
             },
@@ -211,7 +158,7 @@ impl TriangleMesh {
     pub fn geometric_normal(&self, triangle: usize) -> Vec3 {
         let [a, b, c] = self.triangle(triangle, 0.0).map(Vec3::as_dvec3);
         let ng = (b - a).cross(c - a);
-        let flip = match &self.normals {
+        let flip = match self.normals() {
             None => self.flip_normal,
             Some(normals) => {
                 let mean: Vec3 = self.indices[triangle].iter().map(|&v| normals[v as usize]).sum();
@@ -251,7 +198,6 @@ impl TriangleMesh {
     pub fn memory(&self) -> usize {
         self.positions.iter().map(|p| size_of_val(p.as_slice())).sum::<usize>()
             + size_of_val(self.indices.as_slice())
-            + self.normals.as_ref().map_or(0, |n| size_of_val(n.as_slice()))
-            + self.uvs.as_ref().map_or(0, |u| size_of_val(u.as_slice()))
+            + self.attributes.memory()
     }
 }

@@ -6,6 +6,7 @@ mod mesh;
 mod packet;
 mod patch;
 mod patch_mesh;
+mod placement;
 mod quadric;
 mod shape;
 mod sphere;
@@ -13,12 +14,13 @@ mod surface;
 mod surface_lanes;
 mod triangle;
 mod tube;
+mod vertices;
 mod world;
 
 pub use crate::math::LANES;
 pub use cone::RayCone;
 pub use curve::{CurveKind, CurveSegment, CurveSet, FacingCurves};
-pub use mesh::{MeshError, TriangleMesh};
+pub use mesh::TriangleMesh;
 pub use packet::{HitPacket, Ray, RayPacket, RayQueue};
 pub use patch::{Patch, PatchHit};
 pub use patch_mesh::{PatchMesh, PatchSurface};
@@ -29,6 +31,7 @@ pub use surface::{Hit, SurfaceInteraction};
 pub use surface_lanes::{SurfaceLanes, Surfaces};
 pub use triangle::{LEAST_ERROR, triangle_error};
 pub use tube::{TubePiece, TubeSet};
+pub use vertices::MeshError;
 pub use world::{Geometry, Group, Instance, Opacity, World, WorldBuilder};
 
 macro_rules! index_newtype {

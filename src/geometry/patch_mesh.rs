@@ -1,9 +1,9 @@
 //! Meshes of bilinear patches.
 
-use super::mesh::MeshError;
 use super::patch::{Patch, mix};
 use super::surface::LocalSurface;
 use super::triangle::LEAST_ERROR;
+use super::vertices::{Attributes, MeshError, check_faces, check_positions};
 use crate::math::{DAffine3, DVec2, DVec3, Vec2, Vec3};
 
 /// Bilinear patches over shared vertices.
@@ -12,8 +12,7 @@ pub struct PatchMesh {
     positions: Vec<Vec3>,
     /// p00, p10, p01, p11 of each patch.
     indices: Vec<[u32; 4]>,
-    normals: Option<Vec<Vec3>>,
-    uvs: Option<Vec<Vec2>>,
+    attributes: Attributes,
     flip_normal: bool,
 }
 
@@ -21,47 +20,33 @@ impl PatchMesh {
     /// Patches of `indices` into `positions`.
     ///
     /// # Errors
-    /// Positions that are not finite, indices that name none. (In the message patches are called triangles.)
+    /// Positions that are not finite, indices that name none.
     pub fn new(positions: Vec<Vec3>, indices: Vec<[u32; 4]>) -> Result<Self, MeshError> {
-        if let Some(bad) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(MeshError::NotFinite(bad));
-        }
-        let vertices = positions.len();
-        for (triangle, corners) in indices.iter().enumerate() {
-            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices) {
-                return Err(MeshError::IndexOutOfRange {
-                    triangle,
-                    vertex,
-                    vertices,
-                });
-            }
-        }
+        check_positions(&positions)?;
+        check_faces(&indices, positions.len())?;
         Ok(Self {
             positions,
             indices,
-            normals: None,
-            uvs: None,
+            attributes: Attributes::default(),
             flip_normal: false,
         })
     }
 
-    /// With shading normals, one a vertex, of any length.
+    /// With shading normals, one a vertex, of any length; or with none.
     ///
     /// # Errors
-    /// If there is not one for each vertex.
+    /// If there are some, but not one for each vertex.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Self, MeshError> {
-        self.check_count("normals", normals.len())?;
-        self.normals = Some(normals);
+        self.attributes.set_normals(normals, self.positions.len())?;
         Ok(self)
     }
 
-    /// With texture coordinates, one a vertex; without, they are the parameters u and v.
+    /// With texture coordinates, one a vertex; or with none: then they are the parameters u and v.
     ///
     /// # Errors
-    /// If there is not one for each vertex.
+    /// If there are some, but not one for each vertex.
     pub fn with_uvs(mut self, uvs: Vec<Vec2>) -> Result<Self, MeshError> {
-        self.check_count("texture coordinates", uvs.len())?;
-        self.uvs = Some(uvs);
+        self.attributes.set_uvs(uvs, self.positions.len())?;
         Ok(self)
     }
 
@@ -70,15 +55,6 @@ impl PatchMesh {
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
         self.flip_normal = flip;
         self
-    }
-
-    fn check_count(&self, what: &'static str, count: usize) -> Result<(), MeshError> {
-        let vertices = self.positions.len();
-        if count == vertices {
-            Ok(())
-        } else {
-            Err(MeshError::AttributeCount { what, count, vertices })
-        }
     }
 
     /// Number of patches.
@@ -100,10 +76,12 @@ impl PatchMesh {
         PatchSurface {
             patch: self.patch(index),
             normals: self
+                .attributes
                 .normals
                 .as_ref()
                 .map_or([DVec3::ZERO; 4], |normals| corners.map(|v| normals[v].as_dvec3())),
             uvs: self
+                .attributes
                 .uvs
                 .as_ref()
                 .map_or(UNIT_SQUARE, |uvs| corners.map(|v| uvs[v].as_dvec2())),
@@ -113,10 +91,7 @@ impl PatchMesh {
 
     /// Bytes of its arrays.
     pub fn memory(&self) -> usize {
-        size_of_val(self.positions.as_slice())
-            + size_of_val(self.indices.as_slice())
-            + self.normals.as_ref().map_or(0, |n| size_of_val(n.as_slice()))
-            + self.uvs.as_ref().map_or(0, |u| size_of_val(u.as_slice()))
+        size_of_val(self.positions.as_slice()) + size_of_val(self.indices.as_slice()) + self.attributes.memory()
     }
 }
 

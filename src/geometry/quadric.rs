@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
+use super::placement::Placement;
 use super::shape::LineHits;
 use super::sphere::line_roots;
 use super::surface::LocalSurface;
 use super::triangle::LEAST_ERROR;
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec2, DVec3, Vec2, Vec3};
+use crate::math::{Bounds3, DAffine3, DVec2, DVec3, Vec2};
 
 /// A part of a surface of revolution around the z axis of its object space, from angle 0 at the x axis on. An affine transform
 /// may stretch it; it does not move by itself (an instance can move it).
@@ -16,9 +17,7 @@ pub struct Quadric {
     kind: QuadricKind,
     /// Angle that it goes around, in (0, 2π].
     phi_max: f64,
-    world_from_object: DAffine3,
-    object_from_world: DAffine3,
-    flip_normal: bool,
+    placement: Placement,
     /// Whether its texture coordinates are Mitsuba's of a disk.
     radial_uv: bool,
     /// Diagonal of its box.
@@ -90,16 +89,14 @@ impl QuadricKind {
 impl Quadric {
     /// The part within the angle `phi_max` (radians, in (0, 2π]); `None` if that is no surface, or the transform is singular.
     pub fn new(kind: QuadricKind, phi_max: f64, world_from_object: DAffine3) -> Option<Self> {
-        let object_from_world = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
+        let placement = Placement::new(world_from_object)?;
         if !(kind.is_valid() && phi_max > 0.0 && phi_max <= TAU) {
             return None;
         }
         let mut quadric = Self {
             kind,
             phi_max,
-            world_from_object,
-            object_from_world,
-            flip_normal: false,
+            placement,
             radial_uv: false,
             size: 0.0,
         };
@@ -110,7 +107,7 @@ impl Quadric {
     /// With the geometric normal on the other side: that towards the axis, and of a disk that of negative z.
     #[must_use]
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
-        self.flip_normal = flip;
+        self.placement.flip_normal = flip;
         self
     }
 
@@ -123,8 +120,8 @@ impl Quadric {
 
     /// This one, placed by another transform after its own; `None` if the product is singular.
     pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
-        let placed = Self::new(self.kind, self.phi_max, *transform * self.world_from_object)?;
-        let placed = placed.with_flipped_normal(self.flip_normal);
+        let placed = Self::new(self.kind, self.phi_max, *transform * self.placement.world_from_object)?;
+        let placed = placed.with_flipped_normal(self.placement.flip_normal);
         Some(placed.with_radial_uv(self.radial_uv))
     }
 
@@ -135,17 +132,17 @@ impl Quadric {
 
     /// World space (or that of the group) to object space.
     pub fn object_from_world(&self) -> &DAffine3 {
-        &self.object_from_world
+        &self.placement.object_from_world
     }
 
     /// A box around it; as if it went all the way around.
     pub fn bounds(&self) -> Bounds3 {
         let (radius, z) = self.kind.extent();
-        let m = self.world_from_object.matrix3;
+        let m = self.placement.world_from_object.matrix3;
         let across = DVec2::new(radius, radius);
         // The support of an ellipse along an axis of the world.
         let half = DVec3::from_array([0, 1, 2].map(|i| (across * DVec2::new(m.x_axis[i], m.y_axis[i])).length()));
-        let center = self.world_from_object.translation;
+        let center = self.placement.world_from_object.translation;
         let ends = z.map(|z| center + m.z_axis * z);
         let (mut min, mut max) = (ends[0].min(ends[1]) - half, ends[0].max(ends[1]) + half);
         if let QuadricKind::Sphere { radius, .. } = self.kind {
@@ -153,18 +150,13 @@ impl Quadric {
             let half = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()) * radius;
             (min, max) = (min.max(center - half), max.min(center + half));
         }
-        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
-        Bounds3 {
-            min: outward(min, f32::next_down),
-            max: outward(max, f32::next_up),
-        }
+        Bounds3::around(min, max)
     }
 
     /// Where the infinite line of a ray meets it.
     #[inline]
     pub fn intersect(&self, origin: DVec3, direction: DVec3) -> LineHits {
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         let Some([a, b]) = self.whole(o, d) else {
             return LineHits::NONE;
         };
@@ -266,8 +258,7 @@ impl Quadric {
 
     /// The surface where a ray meets it at `tnear` or behind, or nearly does.
     pub(super) fn surface(&self, origin: DVec3, direction: DVec3, tnear: f64) -> LocalSurface {
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         // Where a backend saw a hit through an instance's rounded transform: of the whole surface, or the point nearest to the axis.
         let t = self.intersect(origin, direction).from(tnear).unwrap_or_else(|| {
             let [a, b] = self.whole(o, d).unwrap_or([f64::NAN; 2]);
@@ -275,12 +266,10 @@ impl Quadric {
             whole.from(tnear).unwrap_or(-o.dot(d) / d.length_squared())
         });
         let p = self.onto(o + d * t);
-        let [dpdu, dpdv] = self
-            .derivatives(p)
-            .map(|v| self.world_from_object.transform_vector3(v).as_vec3());
-        let ng = self.world_normal(p);
+        let [dpdu, dpdv] = self.derivatives(p).map(|v| self.placement.vector(v));
+        let ng = self.placement.normal(self.normal(p));
         LocalSurface {
-            p: self.world_from_object.transform_point3(p),
+            p: self.placement.point(p),
             error: self.error(),
             ng,
             ns: ng.as_vec3(),
@@ -294,11 +283,6 @@ impl Quadric {
     /// How far from a point a backend may see the surface, beside the rounding of the point: its test is in double precision.
     pub fn error(&self) -> f64 {
         LEAST_ERROR * self.size
-    }
-
-    fn world_normal(&self, p: DVec3) -> DVec3 {
-        let normal = (self.object_from_world.matrix3.transpose() * self.normal(p)).normalize();
-        if self.flip_normal { -normal } else { normal }
     }
 
     /// The point for `u` in [0, 1)², uniform by area in object space.
@@ -323,8 +307,8 @@ impl Quadric {
             }
         };
         QuadricPoint {
-            p: self.world_from_object.transform_point3(p),
-            ng: self.world_normal(p),
+            p: self.placement.point(p),
+            ng: self.placement.normal(self.normal(p)),
             uv: self.uv(phi, p),
             pdf: self.density(p),
         }
@@ -332,13 +316,13 @@ impl Quadric {
 
     /// The density by area, in the world, of [`Quadric::sample`] for a point of the surface.
     pub fn pdf(&self, p: DVec3) -> f64 {
-        self.density(self.object_from_world.transform_point3(p))
+        self.density(self.placement.object_from_world.transform_point3(p))
     }
 
     /// The same for a point of object space: areas grow by |det M| |M⁻ᵀ n|.
     fn density(&self, p: DVec3) -> f64 {
-        let normal = self.object_from_world.matrix3.transpose() * self.normal(p);
-        let growth = self.world_from_object.matrix3.determinant().abs() * normal.length();
+        let normal = self.placement.object_from_world.matrix3.transpose() * self.normal(p);
+        let growth = self.placement.world_from_object.matrix3.determinant().abs() * normal.length();
         1.0 / (self.object_area() * growth)
     }
 

@@ -1,15 +1,14 @@
 //! Spheres, in double precision from the parser to the hit.
 
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec3, Vec3};
+use super::placement::Placement;
+use crate::math::{Bounds3, DAffine3, DVec3, Vec3};
 
 /// A sphere around the origin of its object space. An affine transform may make it an ellipsoid; it does not move by itself
 /// (an instance can move it).
 #[derive(Clone, Debug)]
 pub struct Sphere {
     radius: f64,
-    world_from_object: DAffine3,
-    object_from_world: DAffine3,
-    flip_normal: bool,
+    placement: Placement,
 }
 
 /// Where a ray enters and leaves a sphere, in units of the ray's direction.
@@ -24,13 +23,8 @@ pub struct SphereHits {
 impl Sphere {
     /// A sphere of `radius` (positive) about the object space origin; `None` if the transform is singular.
     pub fn new(radius: f64, world_from_object: DAffine3) -> Option<Self> {
-        let inverse = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
-        (radius.is_finite() && radius > 0.0).then_some(Self {
-            radius,
-            world_from_object,
-            object_from_world: inverse,
-            flip_normal: false,
-        })
+        let placement = Placement::new(world_from_object)?;
+        (radius.is_finite() && radius > 0.0).then_some(Self { radius, placement })
     }
 
     /// A sphere of `radius` around `center`.
@@ -41,13 +35,13 @@ impl Sphere {
     /// With the geometric normal pointing inward.
     #[must_use]
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
-        self.flip_normal = flip;
+        self.placement.flip_normal = flip;
         self
     }
 
     /// Whether the geometric normal points inward.
     pub fn has_flipped_normal(&self) -> bool {
-        self.flip_normal
+        self.placement.flip_normal
     }
 
     /// Radius in object space.
@@ -57,36 +51,28 @@ impl Sphere {
 
     /// The centre, in world space (or that of the group).
     pub fn center(&self) -> DVec3 {
-        self.world_from_object.translation
+        self.placement.world_from_object.translation
     }
 
     /// Object space to world space (or that of the group).
     pub fn world_from_object(&self) -> &DAffine3 {
-        &self.world_from_object
+        &self.placement.world_from_object
     }
 
     /// World space to object space.
     pub fn object_from_world(&self) -> &DAffine3 {
-        &self.object_from_world
+        &self.placement.object_from_world
     }
 
     /// A box around it.
     pub fn bounds(&self) -> Bounds3 {
-        // The support of an ellipsoid along axis i is r |row i of M|.
-        let m = self.world_from_object.matrix3.transpose();
-        let half = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length()) * self.radius;
-        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
-        Bounds3 {
-            min: outward(self.center() - half, f32::next_down),
-            max: outward(self.center() + half, f32::next_up),
-        }
+        self.placement.box_around([(DVec3::ZERO, self.radius)])
     }
 
     /// Where the infinite line of a ray meets the sphere; `None` where it misses.
     #[inline]
     pub fn intersect(&self, origin: DVec3, direction: DVec3) -> Option<SphereHits> {
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         let [first, second] = line_roots(o, d, self.radius)?;
         Some(SphereHits {
             enter: first.min(second),

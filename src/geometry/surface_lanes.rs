@@ -53,27 +53,29 @@ impl SurfaceLanes {
     /// Computes what the rays that take part hit.
     #[inline]
     pub fn fill(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
-        self.is_triangle = [false; LANES];
-        let mut is_other = [false; LANES];
+        let mut has_others = false;
         for lane in 0..LANES {
-            let Some(hit) = hits.get(lane) else { continue };
-            match world_mesh(world, hit) {
-                Some((mesh, triangle)) => {
-                    self.is_triangle[lane] = true;
-                    self.triangles.set(lane, mesh, triangle, rays.time[lane]);
-                }
-                None => is_other[lane] = true,
+            let hit = hits.get(lane);
+            let on_mesh = hit.and_then(|hit| world_mesh(world, hit));
+            self.is_triangle[lane] = on_mesh.is_some();
+            has_others |= hit.is_some() & on_mesh.is_none();
+            if let Some((mesh, triangle)) = on_mesh {
+                self.triangles.set(lane, mesh, triangle, rays.time[lane]);
             }
         }
         if self.is_triangle != [false; LANES] {
             let triangles = &self.triangles;
             self.surfaces = self.vectorizer.run(Compute { rays, triangles });
         }
-        if is_other == [false; LANES] {
-            return;
+        if has_others {
+            self.fill_others(world, rays, hits);
         }
-        for lane in (0..LANES).filter(|&lane| is_other[lane]) {
-            let surface = hits.get(lane).map(|hit| world.interaction(&rays.get(lane), hit));
+    }
+
+    fn fill_others(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
+        for lane in 0..LANES {
+            let hit = hits.get(lane).filter(|_| !self.is_triangle[lane]);
+            let surface = hit.map(|hit| world.interaction(&rays.get(lane), hit));
             if let Some(surface) = &surface {
                 self.surfaces.set(lane, surface, rays.origin(lane));
             }

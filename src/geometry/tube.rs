@@ -6,10 +6,11 @@
 
 use std::f64::consts::TAU;
 
+use super::placement::Placement;
 use super::shape::LineHits;
 use super::surface::LocalSurface;
 use super::triangle::LEAST_ERROR;
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec3, Vec2, Vec3};
+use crate::math::{Bounds3, DAffine3, DVec3, Vec2, Vec3};
 
 /// A piece of a tube, object space.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +33,7 @@ pub struct TubePiece {
 #[derive(Clone, Debug)]
 pub struct TubeSet {
     pieces: Vec<TubePiece>,
-    world_from_object: DAffine3,
-    object_from_world: DAffine3,
-    flip_normal: bool,
+    placement: Placement,
 }
 
 /// A piece in the numbers that a line is tested with.
@@ -157,23 +156,18 @@ impl Hull {
 impl TubeSet {
     /// Tubes of these pieces; `None` if the transform is singular or anything is not finite.
     pub fn new(pieces: Vec<TubePiece>, world_from_object: DAffine3) -> Option<Self> {
-        let object_from_world = AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0);
+        let placement = Placement::new(world_from_object)?;
         let is_finite = |piece: &TubePiece| {
             let vectors = piece.ends.iter().chain(piece.tangents.iter().flatten());
             vectors.into_iter().all(|v| v.is_finite()) && piece.radii.iter().chain(&piece.along).all(|x| x.is_finite())
         };
-        pieces.iter().all(is_finite).then_some(Self {
-            pieces,
-            world_from_object,
-            object_from_world,
-            flip_normal: false,
-        })
+        pieces.iter().all(is_finite).then_some(Self { pieces, placement })
     }
 
     /// With the geometric normal on the inside.
     #[must_use]
     pub fn with_flipped_normal(mut self, flip: bool) -> Self {
-        self.flip_normal = flip;
+        self.placement.flip_normal = flip;
         self
     }
 
@@ -190,20 +184,12 @@ impl TubeSet {
     /// A box around a piece.
     pub fn piece_bounds(&self, piece: usize) -> Bounds3 {
         let piece = &self.pieces[piece];
-        let m = &self.world_from_object;
-        let rows = m.matrix3.transpose();
-        let reach = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
-        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (end, radius) in piece.ends.iter().zip(piece.radii) {
-            let p = m.transform_point3(end.as_dvec3());
-            let margin = reach * f64::from(radius);
-            (min, max) = (min.min(p - margin), max.max(p + margin));
-        }
-        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
-        Bounds3 {
-            min: outward(min, f32::next_down),
-            max: outward(max, f32::next_up),
-        }
+        let balls = piece
+            .ends
+            .map(Vec3::as_dvec3)
+            .into_iter()
+            .zip(piece.radii.map(f64::from));
+        self.placement.box_around(balls)
     }
 
     /// Where the line of a ray comes into a piece from outside.
@@ -215,8 +201,7 @@ impl TubeSet {
 
     /// The same, with the distance in units of the direction.
     fn entry(&self, hull: &Hull, origin: DVec3, direction: DVec3) -> Option<Entry> {
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         let length = d.length();
         let d = d / length;
         // From beside the piece, so that no digits are lost to the distance.
@@ -232,8 +217,7 @@ impl TubeSet {
     pub(super) fn surface(&self, piece: usize, origin: DVec3, direction: DVec3) -> LocalSurface {
         let piece = &self.pieces[piece];
         let hull = Hull::new(piece);
-        let o = self.object_from_world.transform_point3(origin);
-        let d = self.object_from_world.transform_vector3(direction);
+        let (o, d) = self.placement.ray(origin, direction);
         // Where a backend saw a hit through an instance's rounded transform: the place beside the middle.
         let (near, fraction) = match self.entry(&hull, origin, direction) {
             Some(entry) => (o + d * entry.t, entry.fraction),
@@ -254,18 +238,15 @@ impl TubeSet {
             None => outward,
             Some(_) => smooth_normal(outward, tangent, hull.taper / hull.axis.length()),
         };
-        let sign = if self.flip_normal { -1.0 } else { 1.0 };
-        let normal = |n: DVec3| (self.object_from_world.matrix3.transpose() * n).normalize() * sign;
-        let to_world = |v: DVec3| self.world_from_object.transform_vector3(v).as_vec3();
         let along = piece.along.map(f64::from);
         let per_along = 1.0 / (along[1] - along[0]);
         LocalSurface {
-            p: self.world_from_object.transform_point3(p),
+            p: self.placement.point(p),
             error: LEAST_ERROR * f64::from(self.size(piece)),
-            ng: normal(outward),
-            ns: normal(shading).as_vec3(),
-            dpdu: to_world(tangent.cross(p - center) * TAU),
-            dpdv: to_world(-(hull.axis - outward * hull.taper) * per_along),
+            ng: self.placement.normal(outward),
+            ns: self.placement.normal(shading).as_vec3(),
+            dpdu: self.placement.vector(tangent.cross(p - center) * TAU),
+            dpdv: self.placement.vector(-(hull.axis - outward * hull.taper) * per_along),
             uv: Vec2::new(
                 turn(outward, tangent) as f32,
                 (1.0 - (along[0] + (along[1] - along[0]) * fraction)) as f32,
@@ -276,7 +257,7 @@ impl TubeSet {
 
     /// How large a piece is in the world, about.
     fn size(&self, piece: &TubePiece) -> f32 {
-        let scale = self.world_from_object.matrix3.to_cols_array().map(f64::abs);
+        let scale = self.placement.world_from_object.matrix3.to_cols_array().map(f64::abs);
         let scale = scale.into_iter().fold(0.0, f64::max) as f32;
         scale * ((piece.ends[1] - piece.ends[0]).length() + piece.radii[0] + piece.radii[1])
     }

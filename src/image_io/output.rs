@@ -73,12 +73,7 @@ impl PendingOutput {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(failed(error)),
         }
-        let directory = directory_of(&target);
-        if !directory.is_dir() {
-            let missing = format!("there is no directory {}", directory.display());
-            return Err(failed(io::Error::new(io::ErrorKind::NotFound, missing)));
-        }
-        temporary_in(directory).map_err(failed)?;
+        temporary_in(directory_of(&target)).map_err(failed)?;
         Ok(Self {
             path: path.to_owned(),
             target,
@@ -163,12 +158,22 @@ fn directory_of(path: &Path) -> &Path {
 
 /// A new hidden file in `directory`, removed when dropped, with the permissions of any new file.
 fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+    if !directory.is_dir() {
+        let missing = format!("there is no directory {}", directory.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, missing));
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".lucerna-").suffix(".tmp");
     // The default is private to the user; the umask still applies to this.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(directory)
+    // Without the name of the temporary file, which says nothing to anybody.
+    builder.tempfile_in(directory).map_err(|error| match error.kind() {
+        kind @ (io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem) => {
+            kind.into()
+        }
+        _ => error,
+    })
 }
 
 /// A temporary file in `directory` that holds `bytes` and is on the disk.

@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use super::{DAffine3, Vec3};
+use super::{DAffine3, DVec3, Vec3};
 
 /// An axis-aligned box; empty where `min > max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,15 @@ impl Bounds3 {
     /// The smallest box around `points`.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::grow)
+    }
+
+    /// A box that holds all between two corners in double precision, rounded outward.
+    pub fn around(min: DVec3, max: DVec3) -> Self {
+        let outward = |v: DVec3, round: fn(f32) -> f32| Vec3::from_array(v.as_vec3().to_array().map(round));
+        Self {
+            min: outward(min, f32::next_down),
+            max: outward(max, f32::next_up),
+        }
     }
 
     /// The smallest box that holds this one and `point`.
@@ -92,14 +101,11 @@ impl Bounds3 {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        let mut result = Self::EMPTY;
-        for corner in self.corners() {
-            let p = transform.transform_point3(corner.as_dvec3());
-            let rounded = p.as_vec3();
-            result.min = result.min.min(Vec3::from_array(rounded.to_array().map(f32::next_down)));
-            result.max = result.max.max(Vec3::from_array(rounded.to_array().map(f32::next_up)));
-        }
-        result
+        let corners = self
+            .corners()
+            .map(|corner| transform.transform_point3(corner.as_dvec3()));
+        let boxes = corners.into_iter().map(|p| Self::around(p, p));
+        boxes.fold(Self::EMPTY, Self::union)
     }
 
     /// Radius of the sphere around [`Bounds3::center`] that holds the box; 0 when empty.

@@ -111,17 +111,10 @@ fn mesh_in_space(mesh: &MeshDesc, transform: &DAffine3, reverse_orientation: boo
     let mut steps = vec![place(&mesh.positions)];
     steps.extend(mesh.positions_end.as_deref().map(place));
     let flip = reverse_orientation ^ mirrors(transform);
-    let mut result = TriangleMesh::new(steps, mesh.indices.clone())
-        .map_err(|e| e.to_string())?
-        .with_flipped_normal(flip);
-    if !mesh.normals.is_empty() {
-        let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
-        result = result.with_normals(normals).map_err(|e| e.to_string())?;
-    }
-    if !mesh.uvs.is_empty() {
-        result = result.with_uvs(mesh.uvs.clone()).map_err(|e| e.to_string())?;
-    }
-    Ok(result)
+    let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
+    let result = TriangleMesh::new(steps, mesh.indices.clone())
+        .and_then(|bare| bare.with_normals(normals)?.with_uvs(mesh.uvs.clone()));
+    Ok(result.map_err(|e| e.to_string())?.with_flipped_normal(flip))
 }
 
 /// Bilinear patches; as triangles, which are traced faster, if all are parallelograms and nothing but their points is given: then two
@@ -129,16 +122,10 @@ fn mesh_in_space(mesh: &MeshDesc, transform: &DAffine3, reverse_orientation: boo
 fn patches_in_space(mesh: &PatchMeshDesc, transform: &DAffine3, reverse_orientation: bool) -> Result<Shape, String> {
     let positions = mesh.positions.iter().map(|&p| transform_point(transform, p)).collect();
     let flip = reverse_orientation ^ mirrors(transform);
-    let mut result = PatchMesh::new(positions, mesh.indices.clone())
-        .map_err(|e| e.to_string())?
-        .with_flipped_normal(flip);
-    if !mesh.normals.is_empty() {
-        let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
-        result = result.with_normals(normals).map_err(|e| e.to_string())?;
-    }
-    if !mesh.uvs.is_empty() {
-        result = result.with_uvs(mesh.uvs.clone()).map_err(|e| e.to_string())?;
-    }
+    let normals = normals_in_space(&mesh.normals, transform, reverse_orientation);
+    let result = PatchMesh::new(positions, mesh.indices.clone())
+        .and_then(|bare| bare.with_normals(normals)?.with_uvs(mesh.uvs.clone()));
+    let result = result.map_err(|e| e.to_string())?.with_flipped_normal(flip);
     let is_plain = mesh.normals.is_empty() && mesh.uvs.is_empty();
     if is_plain && (0..result.patch_count()).all(|i| result.patch(i).is_parallelogram()) {
         return parallelograms(&result, flip).map(Shape::Mesh);

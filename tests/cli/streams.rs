@@ -134,3 +134,41 @@ fn a_profile_says_where_the_time_went() {
     let t: Value = serde_json::from_slice(&std::fs::read(sandbox.path("t.json")).unwrap()).unwrap();
     assert!(t.get("profile").is_none());
 }
+
+#[test]
+fn renders_from_one_side_have_progress_and_statistics() {
+    let sandbox = Sandbox::new();
+    let run = sandbox
+        .lucerna(&[
+            "render",
+            "ball.pbrt",
+            "--integrator",
+            "bdpt",
+            "--strategies",
+            "out",
+            "--json",
+        ])
+        .expect(0);
+    let lines: Vec<Value> = run
+        .stdout()
+        .lines()
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect();
+    let mut layers: Vec<_> = lines
+        .iter()
+        .filter(|line| line["event"] == "progress" && line["done"] == 1.0)
+        .map(|line| line["layer"].as_str())
+        .collect();
+    layers.dedup();
+    assert_eq!(layers, [None, Some("eye-only"), Some("light-only")]);
+    let sides = &lines.last().expect("a result")["one_sided"];
+    for (side, layer, integrator) in [(0, "eye-only", "path"), (1, "light-only", "lightpath")] {
+        let side = &sides[side];
+        assert_eq!(
+            (&side["layer"], &side["integrator"]),
+            (&layer.into(), &integrator.into())
+        );
+        assert!(side["rays"].as_u64() > Some(0), "{side}");
+        assert_eq!(side["dropped_samples"], 0);
+    }
+}

@@ -1,6 +1,6 @@
 //! Arguments, good and bad, and files that are not there.
 
-use crate::Sandbox;
+use crate::{SCENE, Sandbox};
 
 #[test]
 fn help_and_version_are_for_standard_output() {
@@ -51,10 +51,26 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
         ),
         (
             &["render", "ball.pbrt", "--integrator", "magic"],
-            "unknown integrator `magic`",
+            "invalid value 'magic' for '--integrator <NAME>'",
         ),
         (&["render", "ball.pbrt", "--backend", "magic"], "magic"),
-        (&["render", "ball.pbrt", "--spp", "0"], "0"),
+        (&["render", "ball.pbrt", "--spp", "0"], "expected a whole number from 1"),
+        (
+            &["render", "ball.pbrt", "--spp", "-1"],
+            "expected a whole number from 1",
+        ),
+        (
+            &["render", "ball.pbrt", "--sample", "1.5"],
+            "expected a whole number from 0",
+        ),
+        (
+            &["render", "ball.pbrt", "-D", "spp=4"],
+            "ball.pbrt: parameters like spp are for scenes of Mitsuba",
+        ),
+        (
+            &["convert", "ball.pbrt", "./ball.pbrt"],
+            "./ball.pbrt: the scene is read from this file",
+        ),
         (&["render", "ball.pbrt", "--threads", "0"], "0"),
         (&["render", "ball.pbrt", "--resolution", "24"], "width x height"),
         (&["render", "ball.pbrt", "--crop", "4,4,4,8"], "crop is empty"),
@@ -122,6 +138,23 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
         sandbox.lucerna(arguments).expect(2).says(text);
     }
     assert_eq!(sandbox.files(), [] as [&str; 0]);
+    assert_eq!(std::fs::read_to_string(sandbox.path("ball.pbrt")).unwrap(), SCENE);
+}
+
+#[test]
+fn files_that_are_not_there_are_code_1() {
+    let sandbox = Sandbox::new();
+    for scene in ["no.pbrt", "no.xml", "no.ply", "no.obj"] {
+        let run = sandbox.lucerna(&["render", scene]).expect(1);
+        run.says(&format!("lucerna: cannot read {scene}: No such file"));
+    }
+    for arguments in [
+        ["render", "ball.pbrt", "-o", "no/x.png"],
+        ["convert", "ball.pbrt", "no/x.pbrt", "--lenient"],
+    ] {
+        let run = sandbox.lucerna(&arguments).expect(1);
+        run.says("there is no directory no\n");
+    }
 }
 
 #[test]

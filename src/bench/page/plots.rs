@@ -26,10 +26,12 @@ pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
     let mut svg = Svg::new(WIDTH, height);
     let most = sorted.iter().map(|r| r.most).fold(0.0, f64::max);
     let axis = Axis::linear(most, [LABEL, WIDTH - 44.0], 4);
+    let grid = axis.ticks.iter().map(|&x| axis.at(x));
+    svg.lines(grid.map(|x| [[x, 0.0], [x, height - 18.0]]), "grid");
     for &x in &axis.ticks {
-        svg.line([axis.at(x), 0.0], [axis.at(x), height - 18.0], "grid");
         svg.text(axis.at(x), height - 8.0, Anchor::Middle, "quiet", &tick(x));
     }
+    let mut whiskers = Vec::with_capacity(3 * sorted.len());
     for (place, result) in sorted.iter().enumerate() {
         let y = ROW * place as f64;
         let middle = y + ROW / 2.0;
@@ -49,7 +51,7 @@ pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
             name,
         );
         let title = format!(
-            "{}, {}: {:.2} million rays a second ({:.2} to {:.2})",
+            "{}, {}: {:.2} ({:.2} to {:.2})",
             result.family.name(),
             result.way,
             result.mrays,
@@ -64,9 +66,8 @@ pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
         let size = [axis.at(result.mrays) - LABEL, ROW - 5.0];
         svg.bar([LABEL, y + 2.5], size, &class, &title);
         let (low, high) = (axis.at(result.least), axis.at(result.most));
-        svg.line([low, middle], [high, middle], "whisker");
-        svg.line([high, middle - 3.0], [high, middle + 3.0], "whisker");
-        svg.line([low, middle - 3.0], [low, middle + 3.0], "whisker");
+        whiskers.push([[low, middle], [high, middle]]);
+        whiskers.extend([low, high].map(|x| [[x, middle - 3.0], [x, middle + 3.0]]));
         let weight = if is_usual { "strong" } else { "quiet" };
         svg.text(
             high.max(axis.at(result.mrays)) + 5.0,
@@ -76,6 +77,7 @@ pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
             &short(result.mrays),
         );
     }
+    svg.lines(whiskers, "whisker");
     svg.finish(&format!("Rates of {} rays by contender", stream.kind))
 }
 
@@ -119,15 +121,17 @@ pub fn lines(lines: &[Line], style: &Style<'_>) -> String {
     }
     let y_axis = Axis::linear(most, [frame[2], frame[3]], 4);
     let mut svg = Svg::new(WIDTH, HEIGHT);
+    let grid = y_axis.ticks.iter().map(|&y| y_axis.at(y));
+    svg.lines(grid.map(|y| [[frame[0], y], [frame[1], y]]), "grid");
     for &y in &y_axis.ticks {
-        svg.line([frame[0], y_axis.at(y)], [frame[1], y_axis.at(y)], "grid");
         svg.text(frame[0] - 6.0, y_axis.at(y), Anchor::End, "quiet", &tick(y));
     }
+    let marks = x_axis.ticks.iter().map(|&x| x_axis.at(x));
+    let marks = marks.map(|x| [[x, frame[2]], [x, frame[2] + 4.0]]);
+    svg.lines(marks.chain([[[frame[0], frame[2]], [frame[1], frame[2]]]]), "axis");
     for &x in &x_axis.ticks {
-        svg.line([x_axis.at(x), frame[2]], [x_axis.at(x), frame[2] + 4.0], "axis");
         svg.text(x_axis.at(x), frame[2] + 13.0, Anchor::Middle, "quiet", &tick(x));
     }
-    svg.line([frame[0], frame[2]], [frame[1], frame[2]], "axis");
     svg.text(frame[1], HEIGHT - 9.0, Anchor::End, "quiet", style.x);
     svg.text(2.0, 8.0, Anchor::Start, "quiet", style.y);
     for line in lines {
@@ -173,11 +177,8 @@ pub fn ratios(rows: &[Ratio], what: &str) -> String {
         axis.ticks.push(1.0);
     }
     for &x in &axis.ticks {
-        svg.line(
-            [axis.at(x), 0.0],
-            [axis.at(x), height - 20.0],
-            if x == 1.0 { "axis" } else { "grid" },
-        );
+        let class = if x == 1.0 { "axis" } else { "grid" };
+        svg.lines([[[axis.at(x), 0.0], [axis.at(x), height - 20.0]]], class);
         svg.text(axis.at(x), height - 9.0, Anchor::Middle, "quiet", &tick(x));
     }
     for (place, row) in rows.iter().enumerate() {

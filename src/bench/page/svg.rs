@@ -1,6 +1,6 @@
 //! Drawing: the little of SVG that the plots need, and the ticks of axes.
 
-use std::fmt::{Display, Write};
+use std::fmt::{self, Display, Formatter, Write};
 
 /// Text that may stand in markup.
 pub fn escaped(text: &str) -> String {
@@ -15,6 +15,16 @@ pub struct Svg {
     body: String,
     width: f64,
     height: f64,
+}
+
+/// A length to a tenth, in as few characters as that takes.
+struct Length(f64);
+
+impl Display for Length {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        // Adding 0 makes -0 be 0.
+        Display::fmt(&((10.0 * self.0).round() / 10.0 + 0.0), f)
+    }
 }
 
 /// Where a text is, relative to its point.
@@ -46,38 +56,48 @@ impl Svg {
     /// A text on the line through `y`.
     pub fn text(&mut self, x: f64, y: f64, anchor: Anchor, class: &str, text: &str) {
         let anchor = match anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
+            Anchor::Start => "",
+            Anchor::Middle => "middle ",
+            Anchor::End => "end ",
         };
-        let text = escaped(text);
-        self.push(format_args!(
-            r#"<text x="{x:.1}" y="{:.1}" text-anchor="{anchor}" class="{class}">{text}</text>"#,
-            y + 3.8
-        ));
+        let class = format!("{anchor}{class}");
+        let (x, y, class, text) = (Length(x), Length(y + 3.8), class.trim_end(), escaped(text));
+        if class.is_empty() {
+            self.push(format_args!(r#"<text x="{x}" y="{y}">{text}</text>"#));
+        } else {
+            self.push(format_args!(r#"<text x="{x}" y="{y}" class="{class}">{text}</text>"#));
+        }
     }
 
     /// A filled rectangle, with what is said when the pointer is on it.
     pub fn bar(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], class: &str, title: &str) {
-        let (width, title) = (width.max(0.5), escaped(title));
+        let [x, y, width, height] = [x, y, width.max(0.5), height].map(Length);
+        let title = escaped(title);
         self.push(format_args!(
-            r#"<rect x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}" rx="2" class="{class}"><title>{title}</title></rect>"#
+            r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" class="{class}"><title>{title}</title></rect>"#
         ));
     }
 
-    /// A line.
-    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], class: &str) {
-        let ([x1, y1], [x2, y2]) = (from, to);
-        self.push(format_args!(
-            r#"<line x1="{x1:.1}" y1="{y1:.1}" x2="{x2:.1}" y2="{y2:.1}" class="{class}"/>"#
-        ));
+    /// Lines that look alike, each along an axis: they are one element.
+    pub fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, class: &str) {
+        let mut d = String::new();
+        for [from, to] in lines {
+            let ([x, y], [to_x, to_y]) = (from.map(Length), to.map(Length));
+            let _ = write!(d, "M{x} {y}");
+            let _ = if from[0] == to[0] {
+                write!(d, "V{to_y}")
+            } else {
+                write!(d, "H{to_x}")
+            };
+        }
+        self.push(format_args!(r#"<path d="{d}" class="{class}"/>"#));
     }
 
     /// Lines from point to point.
     pub fn path(&mut self, points: &[[f64; 2]], class: &str) {
         let mut d = String::new();
         for (i, [x, y]) in points.iter().enumerate() {
-            let _ = write!(d, "{}{x:.1} {y:.1}", if i == 0 { "M" } else { "L" });
+            let _ = write!(d, "{}{} {}", if i == 0 { "M" } else { "L" }, Length(*x), Length(*y));
         }
         self.push(format_args!(r#"<path d="{d}" class="{class}"/>"#));
     }
@@ -85,8 +105,9 @@ impl Svg {
     /// A dot, with what is said when the pointer is on it.
     pub fn dot(&mut self, [x, y]: [f64; 2], radius: f64, class: &str, title: &str) {
         let title = escaped(title);
+        let [x, y] = [x, y].map(Length);
         self.push(format_args!(
-            r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" class="{class}"><title>{title}</title></circle>"#
+            r#"<circle cx="{x}" cy="{y}" r="{radius}" class="{class}"><title>{title}</title></circle>"#
         ));
     }
 
@@ -94,9 +115,7 @@ impl Svg {
     pub fn finish(self, description: &str) -> String {
         let Self { body, width, height } = self;
         let description = escaped(description);
-        format!(
-            "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{description}\" xmlns=\"http://www.w3.org/2000/svg\">\n{body}</svg>\n"
-        )
+        format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{description}\">\n{body}</svg>\n")
     }
 }
 
@@ -223,6 +242,18 @@ mod tests {
             assert!(values.iter().all(|&v| (0.0..=1.0).contains(&axis.at(v))), "{values:?}");
             assert!(!axis.ticks.is_empty(), "{values:?}");
         }
+    }
+
+    #[test]
+    fn elements_take_few_characters() {
+        let mut svg = Svg::new(10.0, 10.0);
+        svg.lines([[[1.0, 2.04], [1.0, 3.06]], [[0.25, 4.0], [5.0, 4.0]]], "grid");
+        svg.text(1.0, 0.2, Anchor::End, "", "a");
+        svg.text(-0.01, 0.2, Anchor::Start, "", "<");
+        assert_eq!(
+            svg.body,
+            "<path d=\"M1 2V3.1M0.3 4H5\" class=\"grid\"/>\n<text x=\"1\" y=\"4\" class=\"end\">a</text>\n<text x=\"0\" y=\"4\">&lt;</text>\n"
+        );
     }
 
     #[test]

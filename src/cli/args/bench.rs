@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use super::values::{Threads, parse_resolution, parse_seed, parse_threads};
 use crate::bench::synthetic::Recipe;
+use crate::integrator::Integrator;
 
 /// Measure intersection backends on the rays of renders.
 ///
@@ -46,7 +48,7 @@ pub struct BenchArgs {
     pub html: Option<PathBuf>,
 
     /// Numbers of threads, as in 4, 1..8 or 1,2,4
-    #[arg(long, value_name = "N", default_value = "1", value_parser = parse_threads)]
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = parse_threads)]
     pub threads: Threads,
 
     /// Run on these processors only, as in 0,2-3
@@ -54,11 +56,12 @@ pub struct BenchArgs {
     pub pin: Option<String>,
 
     /// How often each backend traces each ray
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub turns: u32,
 
     /// About so many rays of each kind
-    #[arg(long, value_name = "N", default_value_t = 1 << 17, value_parser = clap::value_parser!(u32).range(1..=1 << 26))]
+    #[arg(long, value_name = "N", default_value_t = 1 << 17, allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u32).range(1..=1 << 26))]
     pub count: u32,
 
     /// Every way to trace with builds of every quality; else only with those of high quality, and others as renders trace
@@ -70,7 +73,7 @@ pub struct BenchArgs {
     pub only: Vec<String>,
 
     /// How light transport is estimated in the recorded render [default: the scene's]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Integrator::NAMES))]
     pub integrator: Option<String>,
 
     /// Pixels of the recorded picture [default: the scene's]
@@ -78,7 +81,7 @@ pub struct BenchArgs {
     pub resolution: Option<[u32; 2]>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_seed)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = parse_seed)]
     pub seed: u64,
 
     /// Take unknown and unsupported parameters of a scene as warnings where something can stand in for them

@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use super::values::{
     ColorArg, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop,
-    parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_resolution, parse_seed,
+    parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_positive_whole, parse_resolution,
+    parse_seed, parse_whole,
 };
 use crate::accel::Backend;
 use crate::film::PixelRect;
+use crate::integrator::Integrator;
 
 /// Render scenes to image files.
 ///
@@ -43,8 +46,8 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 
-    /// How light transport is estimated [default: the scene's] [possible values: path, kajiya, bdpt, lightpath, photon, sppm]
-    #[arg(long, value_name = "NAME")]
+    /// How light transport is estimated [default: the scene's]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Integrator::NAMES))]
     pub integrator: Option<String>,
 
     /// How `path` looks for light: by directions drawn from BSDFs, by points of lights, or by both [default: the scene's]
@@ -63,11 +66,11 @@ pub struct RenderArgs {
     pub photon_map: Option<PhotonMapArg>,
 
     /// With `sppm`: begin no pass after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = parse_positive)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_positive)]
     pub time: Option<f64>,
 
     /// With `sppm`: stop when the picture's relative error is expected to be at most this (0.05 is hardly visible)
-    #[arg(long, value_name = "ERROR", value_parser = parse_positive)]
+    #[arg(long, value_name = "ERROR", allow_negative_numbers = true, value_parser = parse_positive)]
     pub noise: Option<f64>,
 
     /// With the integrator `bdpt`: write what each strategy (s, t) found into this directory
@@ -81,11 +84,11 @@ pub struct RenderArgs {
 
     /// The greatest number of edges of paths whose strategies are told apart
     #[arg(long, value_name = "N", default_value_t = 5, requires = "strategies",
-        value_parser = clap::value_parser!(u32).range(1..=10))]
+        allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10))]
     pub strategies_depth: u32,
 
     /// Samples a pixel [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = parse_positive_whole)]
     pub spp: Option<u32>,
 
     /// Seed of all random numbers
@@ -116,7 +119,7 @@ pub struct RenderArgs {
     pub pixel: Option<PixelRect>,
 
     /// Render only this sample of each pixel, counted from 0
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = parse_whole)]
     pub sample: Option<u32>,
 
     /// Carry wavelengths along paths, or linear sRGB
@@ -128,7 +131,7 @@ pub struct RenderArgs {
     pub exposure: f32,
 
     /// Threads [default: as many as the machine runs at once]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
 
     /// What answers ray queries: `embree` or `bvh`

@@ -216,6 +216,18 @@ pub(super) fn parse_seed(text: &str) -> Result<u64, String> {
         .map_err(|_| format!("expected an integer from 0 to {}", u64::MAX))
 }
 
+pub(super) fn parse_whole(text: &str) -> Result<u32, String> {
+    text.parse()
+        .map_err(|_| format!("expected a whole number from 0 to {}", u32::MAX))
+}
+
+pub(super) fn parse_positive_whole(text: &str) -> Result<u32, String> {
+    text.parse()
+        .ok()
+        .filter(|&n| n > 0)
+        .ok_or_else(|| format!("expected a whole number from 1 to {}", u32::MAX))
+}
+
 pub(super) fn parse_finite(text: &str) -> Result<f32, String> {
     text.parse()
         .ok()

@@ -14,7 +14,6 @@ use super::report::{Channel, Reporter};
 use super::stats::Statistics;
 use crate::error::{Error, Result};
 use crate::image_io::ImageFormat;
-use crate::integrator::Integrator;
 use prepare::check_placeholders;
 
 /// The whole job.
@@ -49,14 +48,6 @@ pub fn run(args: &RenderArgs, print_error: &dyn Fn(&Error)) -> u8 {
 impl<'a> Job<'a> {
     /// Checks what can be checked before any scene is read.
     fn new(args: &'a RenderArgs, print_error: &'a dyn Fn(&Error)) -> Result<Self> {
-        if let Some(name) = &args.integrator
-            && !Integrator::NAMES.contains(&name.as_str())
-        {
-            let known = Integrator::NAMES.join(", ");
-            return Err(Error::Usage(format!(
-                "unknown integrator `{name}`: expected one of {known}"
-            )));
-        }
         if let Some(output) = &args.output {
             ImageFormat::of_path(output)?;
             let template = output.to_string_lossy();

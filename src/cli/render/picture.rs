@@ -40,7 +40,7 @@ impl Job<'_> {
             .and_then(|outputs| integrator.film_of_strategies(&view, outputs.pyramid))
             .unwrap_or_else(|| integrator.film(&view));
         let film = view.with_layers(film, &prepared.scene);
-        let progress = reporter.progress();
+        let progress = reporter.progress(None);
         let stats = self
             .pool
             .install(|| integrator.render(&prepared.scene, &view, &film, &progress));
@@ -87,12 +87,15 @@ impl Job<'_> {
             (self.print_error)(reason);
             reporter.say(&format!("the picture is in {} instead", written.path.display()));
         }
+        reporter.dropped(&stats, self.args.seed, "(and the options of this render)");
+        let mut one_sided = Vec::new();
         if let Some(outputs) = strategies {
-            let one_sided = self.one_sided(&prepared.scene, &view, &integrator);
-            outputs.write(&film, one_sided, &view, &metadata, self.args.exposure)?;
+            let (pictures, statistics) = self.one_sided(&prepared.scene, &view, &integrator, &reporter);
+            outputs.write(&film, pictures, &view, &metadata, self.args.exposure)?;
+            one_sided.extend(statistics);
         }
-        report_dropped(&reporter, &stats, self.args.seed, path);
         let mut statistics = self.statistics_of(prepared, &view, &integrator, &stats, &written.path, path, start);
+        statistics.one_sided = one_sided;
         if self.args.profile {
             statistics.profile = Some(self.profile(prepared, &view, &integrator, &stats)?);
         }
@@ -198,6 +201,7 @@ impl Job<'_> {
             peak_memory_bytes: peak_memory_bytes(),
             profile: None,
             photons: Photons::of(stats),
+            one_sided: Vec::new(),
             dropped_samples: stats.dropped_samples,
         }
     }
@@ -244,23 +248,4 @@ pub(super) fn data_window(view: &View) -> Window {
 pub(super) fn display_window(view: &View) -> Window {
     let [width, height] = view.resolution.map(|size| i32::try_from(size).unwrap_or(i32::MAX));
     Window::of_size(width, height)
-}
-
-/// Says which samples were dropped, and how to render them again.
-fn report_dropped(reporter: &Reporter, stats: &RenderStats, seed: u64, scene: &Path) {
-    if stats.dropped_samples == 0 {
-        return;
-    }
-    reporter.say(&format!(
-        "warning: {} samples were not finite or negative and count as black; to look into one:",
-        stats.dropped_samples
-    ));
-    for dropped in stats.dropped.iter().take(4) {
-        let [x, y] = dropped.pixel;
-        reporter.say(&format!(
-            "  lucerna render {} --seed {seed} --pixel {x},{y} --sample {} (and the options of this render)",
-            scene.display(),
-            dropped.sample
-        ));
-    }
 }

@@ -6,11 +6,13 @@ use std::path::Path;
 use super::Job;
 use super::picture::{data_window, display_window};
 use crate::cli::memory;
+use crate::cli::report::Reporter;
+use crate::cli::stats::OneSided;
 use crate::desc::SceneDesc;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::image_io::{Image, ImageMetadata, PendingOutput, Window};
-use crate::integrator::{Integrator, Pyramid, Silent, Strategies, StrategyLayer};
+use crate::integrator::{Integrator, Pyramid, Strategies, StrategyLayer};
 use crate::scene::{Scene, View};
 
 /// The files for the strategies of a picture.
@@ -78,14 +80,27 @@ impl Job<'_> {
         }))
     }
 
-    /// The pictures by paths from the eye alone and from the lights alone, with as many samples.
-    pub(super) fn one_sided(&self, scene: &Scene, view: &View, integrator: &Integrator) -> [Vec<f32>; ONE_SIDED.len()] {
-        ONE_SIDED.map(|(_, name)| {
+    /// The pictures by paths from the eye alone and from the lights alone, with as many samples, and what their renders say about
+    /// themselves.
+    pub(super) fn one_sided(
+        &self,
+        scene: &Scene,
+        view: &View,
+        integrator: &Integrator,
+        reporter: &Reporter<'_>,
+    ) -> ([Vec<f32>; ONE_SIDED.len()], [OneSided; ONE_SIDED.len()]) {
+        let rendered = ONE_SIDED.map(|(layer, name)| {
             let integrator = integrator.named(name);
             let film = integrator.film(view);
-            self.pool.install(|| integrator.render(scene, view, &film, &Silent));
-            film.develop()
-        })
+            let progress = reporter.progress(Some(layer));
+            let stats = self.pool.install(|| integrator.render(scene, view, &film, &progress));
+            progress.finish();
+            let options = format!("--integrator {name} (and the options of this render but --strategies)");
+            reporter.dropped(&stats, self.args.seed, &options);
+            (film.develop(), OneSided::of(layer, integrator.name(), &stats))
+        });
+        let [(eye, of_eye), (light, of_light)] = rendered;
+        ([eye, light], [of_eye, of_light])
     }
 }
 

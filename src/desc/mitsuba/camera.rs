@@ -162,16 +162,19 @@ impl<'g> Loader<'g> {
 const DEFAULT_SAMPLES: u32 = 4;
 const DEFAULT_NEAR_CLIP: f64 = 0.01;
 
-/// The angle of the width in degrees, of a picture so many times as wide as high; `None` if it is wrong, which is said.
+/// The angle of the width in degrees, of a picture so many times as wide as high; by a focal length of 50 mm if nothing is said, as in
+/// Mitsuba. `None` if it is wrong, which is said.
 pub(super) fn field_of_view(props: &mut Props<'_>, aspect: f64) -> Option<f64> {
     let axis = props.choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"]);
-    if let Some(text) = props.string("focal_length") {
-        if props.has("fov") {
-            props.error(
-                props.span_of("focal_length"),
-                "`fov` and `focal_length` exclude each other",
-            );
-        }
+    let length = props.string("focal_length");
+    if props.has("fov") && length.is_some() {
+        props.error(
+            props.span_of("focal_length"),
+            "`fov` and `focal_length` exclude each other",
+        );
+    }
+    if length.is_some() || !props.has("fov") {
+        let text = length.unwrap_or("50mm");
         let millimetres = text.trim().strip_suffix("mm").unwrap_or(text).trim().parse::<f64>();
         let Some(length) = millimetres.ok().filter(|v| *v > 0.0 && v.is_finite()) else {
             props.error(
@@ -183,9 +186,6 @@ pub(super) fn field_of_view(props: &mut Props<'_>, aspect: f64) -> Option<f64> {
         // For the diagonal of 35 mm film.
         let half_diagonal = 0.5 * (36.0_f64 * 36.0 + 24.0 * 24.0).sqrt() / length;
         return Some(2.0 * half_width(half_diagonal, "diagonal", aspect).atan().to_degrees());
-    }
-    if !props.has("fov") {
-        props.error(props.object.span, "either `fov` or `focal_length` is needed");
     }
     let fov = props.float("fov")?;
     if !(fov > 0.0 && fov < 180.0) {

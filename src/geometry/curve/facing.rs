@@ -46,7 +46,7 @@ impl CurveSet {
                 let taken = if part == 0 { 0 } else { 1 };
                 for (i, p) in control.iter().enumerate().skip(taken) {
                     let radius = 0.5 * scale * width_at(segment, u0 + (u1 - u0) * i as f64 / 3.0);
-                    let p = self.world_from_object.transform_point3(*p).as_vec3();
+                    let p = self.placement.point(*p).as_vec3();
                     points.push([p.x, p.y, p.z, radius as f32]);
                     largest_radius = largest_radius.max(radius as f32);
                 }
@@ -70,7 +70,7 @@ impl CurveSet {
 
     /// By how much the transform scales in all directions alike; `None` if it does not.
     fn uniform_scale(&self) -> Option<f64> {
-        let m = self.world_from_object.matrix3;
+        let m = self.placement.world_from_object.matrix3;
         let axes = [m.x_axis, m.y_axis, m.z_axis];
         let square = axes[0].length_squared();
         let is_alike = |a: f64| (a - square).abs() <= 1e-6 * square;

@@ -114,6 +114,39 @@ fn meshes() {
     cases.iter().for_each(check);
 }
 
+/// One mistake is one error: what could only be judged without it is passed over.
+#[test]
+fn nothing_follows_from_a_mistake() {
+    let cases: [Case; 5] = [
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 @1e40] \"integer indices\" [0 1 2] \"float vertex_a\" [1 2 3]",
+            "32-bit",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 @7] \"float face_a\" [1]",
+            "there is no vertex 7",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"bilinearmesh\" \"point3 P\" @[0 0] \"integer indices\" [0 1 2 3]",
+            "3 numbers a vertex, found 2",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"cylinder\" @\"float zmin\" 1 \"float phimax\" 90",
+            "`zmin` and `zmax` are equal",
+            "",
+        ),
+        (
+            "WorldBegin Shape \"disk\" @\"float phimax\" 0 \"bool radialuv\" true",
+            "more than 0 degrees",
+            "",
+        ),
+    ];
+    cases.iter().for_each(check);
+}
+
 #[test]
 fn quadrics_patches_and_cages() {
     let cases: [Case; 13] = [

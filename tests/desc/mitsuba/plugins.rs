@@ -56,6 +56,22 @@ fn cameras_see_the_left_at_plus_x_and_span_their_width() {
         let found = fov(&format!("<string name=\"fov_axis\" value=\"{axis}\"/>"));
         assert!((found - of_half_height(half)).abs() < 1e-9, "{axis}: {found}");
     }
+    // Of 50 mm before 35 mm film, if nothing is said.
+    let plain = |focal_length: &str| {
+        let text = format!(r#"<scene version="3.0.0"><sensor type="perspective">{focal_length}</sensor></scene>"#);
+        match read(&text, &STRICT).expect("a scene").views[0].camera.kind {
+            CameraKind::Perspective { fov, .. } => fov,
+            _ => panic!("not perspective"),
+        }
+    };
+    // The film is 768 x 576: its width is 4/5 of its diagonal, and the angle is of its height.
+    let half_diagonal = 0.5 * 36.0_f64.hypot(24.0) / 50.0;
+    assert!(
+        (plain("") - of_half_height(0.6 * half_diagonal)).abs() < 1e-9,
+        "{}",
+        plain("")
+    );
+    assert_eq!(plain(""), plain("<string name=\"focal_length\" value=\"50mm\"/>"));
     let scene = read(&text(""), &STRICT).expect("a scene");
     let view = &scene.views[0];
     // Looking along +z with y up, +x of the world is to the left.

@@ -95,14 +95,16 @@ pub(super) fn corners<const N: usize>(
     Some(groups.iter().map(|t| t.map(i32::cast_unsigned)).collect())
 }
 
-/// The indices of a mesh; one of `N` vertices needs none.
+/// The indices of a mesh of `count` vertices; one of `N` needs none. Without vertices, of which something else is wrong, they are passed over.
 pub(super) fn indices<const N: usize>(
     reader: &mut ParamReader<'_>,
     shape: &str,
-    count: usize,
+    count: Option<usize>,
     face: &str,
 ) -> Option<Vec<[u32; N]>> {
-    match reader.take("indices", &[ParamType::Integer]) {
+    let param = reader.take("indices", &[ParamType::Integer]);
+    let count = count?;
+    match param {
         Some(param) => corners(reader, &param, count, face),
         None if count == N && !reader.has("indices") => Some(vec![std::array::from_fn(|i| i as u32)]),
         None => {

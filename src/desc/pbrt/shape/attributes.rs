@@ -4,8 +4,13 @@ use crate::desc::pbrt::params::{Param, ParamType, Values, value_span};
 use crate::desc::pbrt::reader::ParamReader;
 use crate::desc::{AttributeDomain, ColorSpace, MeshAttributeDesc};
 
-/// The parameters that are attributes of a mesh of so many vertices and triangles, one after another.
-pub(super) fn attributes(reader: &mut ParamReader<'_>, vertices: usize, triangles: usize) -> Vec<MeshAttributeDesc> {
+/// The parameters that are attributes of a mesh of so many vertices and triangles, one after another; those of what there is no
+/// telling how many there are, as they are wrong themselves, are passed over.
+pub(super) fn attributes(
+    reader: &mut ParamReader<'_>,
+    vertices: Option<usize>,
+    triangles: Option<usize>,
+) -> Vec<MeshAttributeDesc> {
     let mut attributes = Vec::new();
     for (domain, count) in [
         (AttributeDomain::Vertices, vertices),
@@ -13,7 +18,7 @@ pub(super) fn attributes(reader: &mut ParamReader<'_>, vertices: usize, triangle
     ] {
         let kinds = [ParamType::Float, ParamType::Rgb];
         for param in reader.take_beginning(domain.prefix(), &kinds) {
-            attributes.extend(attribute(reader, &param, domain, count));
+            attributes.extend(count.and_then(|count| attribute(reader, &param, domain, count)));
         }
     }
     attributes

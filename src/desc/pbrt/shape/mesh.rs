@@ -17,10 +17,10 @@ pub(super) fn triangle_mesh(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let normals = vectors3(reader, "N", ParamType::Normal);
     let tangents = vectors3(reader, "S", ParamType::Vector3);
     let uvs = vectors(reader, "uv", ParamType::Point2, |[x, y]: [f32; 2]| Vec2::new(x, y));
-    let positions = positions?;
-    let count = positions.len();
-    let indices = indices(reader, "trianglemesh", count, "triangle")?;
-    let attributes = attributes(reader, count, indices.len());
+    let count = positions.as_ref().map(Vec::len);
+    let indices = indices(reader, "trianglemesh", count, "triangle");
+    let attributes = attributes(reader, count, indices.as_ref().map(Vec::len));
+    let (positions, count, indices) = (positions?, count?, indices?);
     Some(ShapeKind::TriangleMesh(Arc::new(MeshDesc {
         positions,
         positions_end: as_many(reader, "P1", end, count),
@@ -43,9 +43,9 @@ pub(super) fn bilinear_mesh(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let positions = vertices(reader, "bilinearmesh");
     let normals = vectors3(reader, "N", ParamType::Normal);
     let uvs = vectors(reader, "uv", ParamType::Point2, |[x, y]: [f32; 2]| Vec2::new(x, y));
-    let positions = positions?;
-    let count = positions.len();
-    let indices = indices(reader, "bilinearmesh", count, "patch")?;
+    let count = positions.as_ref().map(Vec::len);
+    let indices = indices(reader, "bilinearmesh", count, "patch");
+    let (positions, count, indices) = (positions?, count?, indices?);
     Some(ShapeKind::BilinearMesh(Arc::new(PatchMeshDesc {
         positions,
         normals: as_many(reader, "N", normals, count).unwrap_or_default(),

@@ -5,8 +5,9 @@ use crate::desc::{QuadricDesc, ShapeKind};
 
 pub(super) fn sphere(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let radius = reader.positive("radius", 1.0);
-    let ends = heights(reader, [-radius, radius])?;
-    let phi_max = angle(reader)?;
+    let ends = heights(reader, [-radius, radius]);
+    let phi_max = angle(reader);
+    let (ends, phi_max) = (ends?, phi_max?);
     // As in pbrt, what is beyond the sphere is its pole.
     let z = ends.map(|z| z.clamp(-radius, radius));
     if z == [-radius, radius] && phi_max == 360.0 {
@@ -27,8 +28,9 @@ pub(super) fn sphere(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
 
 pub(super) fn cylinder(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let radius = reader.positive("radius", 1.0);
-    let z = heights(reader, [-1.0, 1.0])?;
-    let phi_max = angle(reader)?;
+    let z = heights(reader, [-1.0, 1.0]);
+    let phi_max = angle(reader);
+    let (z, phi_max) = (z?, phi_max?);
     let surface = QuadricDesc::Cylinder { radius, z };
     Some(ShapeKind::Quadric { surface, phi_max })
 }
@@ -37,6 +39,7 @@ pub(super) fn disk(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
     let height = reader.float("height").unwrap_or(0.0);
     let radius = reader.positive("radius", 1.0);
     let inner_radius = reader.not_negative("innerradius", 0.0);
+    let radial_uv = reader.boolean("radialuv", false);
     let phi_max = angle(reader)?;
     if inner_radius >= radius {
         no_extent(reader, "innerradius", "the hole of the disk is as large as the disk");
@@ -46,7 +49,7 @@ pub(super) fn disk(reader: &mut ParamReader<'_>) -> Option<ShapeKind> {
         height,
         radius,
         inner_radius,
-        radial_uv: reader.boolean("radialuv", false),
+        radial_uv,
     };
     Some(ShapeKind::Quadric { surface, phi_max })
 }
