@@ -76,7 +76,7 @@ impl Brute {
                     }
                 }
                 shape => {
-                    query.offer_analytic(shape, primitive, ray, candidate);
+                    query.offer_analytic(shape, primitive, ray.line(), candidate);
                 }
             }
         }

@@ -71,3 +71,15 @@ pub struct BlockPlanes {
     /// See [`Plane::normal`](super::triangle::Plane::normal). Its terms are the same for any cyclic order of axes.
     pub normal: [[f64; TRIANGLES]; 3],
 }
+
+/// The lanes whose bits are set.
+#[inline(always)]
+pub fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        (bits != 0).then(|| {
+            bits &= bits - 1;
+            lane
+        })
+    })
+}

@@ -4,6 +4,7 @@
 use std::cell::Cell;
 
 use super::interleave;
+use super::lanes::Lanes;
 use super::traverse::STACK;
 use crate::geometry::{LANES, RayPacket};
 use crate::math::Bounds3;
@@ -23,16 +24,6 @@ pub const BATCH: usize = 4096;
 /// Where a ray of a call is: packet * LANES + lane.
 pub type Place = u16;
 
-/// The class of a direction.
-#[inline(always)]
-fn class([x, y, z]: [f32; 3]) -> usize {
-    let sign = |x: f32| x.to_bits() >> 31;
-    let size = [x.abs(), y.abs(), z.abs()];
-    let is_x = (size[0] > size[1]) & (size[0] > size[2]);
-    let axis = if is_x { 0 } else { 1 + u32::from(size[2] >= size[1]) };
-    (axis << 3 | sign(z) << 2 | sign(y) << 1 | sign(x)) as usize
-}
-
 /// Packets of which the rays are sorted by comparison: to count how many each class has would take longer.
 const FEW_PACKETS: usize = 8;
 
@@ -41,7 +32,7 @@ pub struct Room {
     /// For one ray, or a packet.
     pub stack: [u64; STACK],
     /// For several rays on their way.
-    pub stacks: Vec<interleave::Stack>,
+    pub interleave: interleave::Room,
     /// Of each ray of a batch, its class.
     pub classes: [u16; BATCH],
     /// The rays of a batch in order.
@@ -58,7 +49,7 @@ impl Room {
         ROOM.take().unwrap_or_else(|| {
             Box::new(Self {
                 stack: [0; STACK],
-                stacks: Vec::new(),
+                interleave: interleave::Room::new(),
                 classes: [0; BATCH],
                 places: [0; BATCH],
             })
@@ -71,25 +62,109 @@ impl Room {
     }
 }
 
-/// Puts rays in the order of their classes, and within a class of the cells that they start in; those that take no part are left out.
-/// Returns how many there are.
-pub fn sort(packets: &[RayPacket], bounds: &Bounds3, classes: &mut [u16; BATCH], places: &mut [Place; BATCH]) -> usize {
-    let low = bounds.min;
-    let scale = ((1 << CELL_BITS) as f32 / bounds.extent()).to_array();
-    let cell = |x: f32, axis: usize| ((x - low[axis]) * scale[axis]).clamp(0.0, ((1 << CELL_BITS) - 1) as f32) as u32;
-    // Spreads the bits of a cell number two apart.
-    let spread = |x: u32| (x & 1) | (x & 2) << 2;
-    for (packet, classes) in packets.iter().zip(classes.chunks_exact_mut(LANES)) {
-        for (lane, to) in classes.iter_mut().enumerate() {
-            let class = class([packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]]);
-            let at = [packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]];
-            let at = [0, 1, 2].map(|axis| spread(cell(at[axis], axis)) << axis);
-            let class = class * CELLS + (at[0] | at[1] | at[2]) as usize;
-            *to = if packet.is_active(lane) { class } else { CLASSES * CELLS } as u16;
+/// What the cells of a box are told apart by.
+struct Cells {
+    low: [f32; 3],
+    scale: [f32; 3],
+}
+
+impl Cells {
+    #[inline(always)]
+    fn new(bounds: &Bounds3) -> Self {
+        Self {
+            low: bounds.min.to_array(),
+            scale: ((1 << CELL_BITS) as f32 / bounds.extent()).to_array(),
         }
     }
-    let classes = &classes[..packets.len() * LANES];
-    if packets.len() <= FEW_PACKETS {
+}
+
+/// What is added to a small whole number to have it in the last bits.
+const WHOLE: f32 = (1 << 23) as f32;
+
+/// The class of each ray of a packet, in the last bits.
+#[inline(always)]
+fn packet_classes<S: Lanes<LANES>>(s: S, packet: &RayPacket, cells: &Cells) -> [f32; LANES] {
+    let (direction, origin) = (
+        [&packet.dir_x, &packet.dir_y, &packet.dir_z],
+        [&packet.org_x, &packet.org_y, &packet.org_z],
+    );
+    let zero = s.splat(0.0);
+    let mut sum = s.splat(WHOLE);
+    for axis in 0..3 {
+        let negative = s.lt(s.load(direction[axis]), zero);
+        sum = s.add(sum, s.blend(negative, zero, s.splat((CELLS << axis) as f32)));
+        let from_low = s.sub(s.load(origin[axis]), s.splat(cells.low[axis]));
+        let cell = s.mul(from_low, s.splat(cells.scale[axis]));
+        // The bits of the cells' numbers along the axes in turn.
+        let [first, second] = [1 << axis, 8 << axis];
+        for (from, more) in [(1.0, first), (2.0, second - first), (3.0, first)] {
+            let beyond = s.le(s.splat(from), cell);
+            sum = s.add(sum, s.blend(beyond, zero, s.splat(more as f32)));
+        }
+    }
+    let [x, y, z] = [
+        s.abs(s.load(direction[0])),
+        s.abs(s.load(direction[1])),
+        s.abs(s.load(direction[2])),
+    ];
+    let is_x = s.and(s.lt(y, x), s.lt(z, x));
+    let (y_class, z_class) = (s.splat((8 * CELLS) as f32), s.splat((16 * CELLS) as f32));
+    let greatest = s.blend(is_x, s.blend(s.le(y, z), y_class, z_class), zero);
+    let active = s.le(s.load(&packet.tnear), s.load(&packet.tfar));
+    let none = s.splat(WHOLE + (CLASSES * CELLS) as f32);
+    let mut classes = [0.0; LANES];
+    s.store(s.blend(active, none, s.add(sum, greatest)), &mut classes);
+    classes
+}
+
+/// Puts rays in the order of their classes, and within a class of the cells that they start in; those that take no part are left out.
+/// Returns how many there are.
+#[inline(always)]
+pub fn sort<S: Lanes<LANES>>(
+    s: S,
+    packets: &[RayPacket],
+    bounds: &Bounds3,
+    classes: &mut [u16; BATCH],
+    places: &mut [Place; BATCH],
+) -> usize {
+    let cells = Cells::new(bounds);
+    for (packet, classes) in packets.iter().zip(classes.chunks_exact_mut(LANES)) {
+        let found = packet_classes(s, packet, &cells);
+        for (to, class) in classes.iter_mut().zip(found) {
+            *to = class.to_bits() as u16;
+        }
+    }
+    place(&classes[..packets.len() * LANES], places)
+}
+
+/// Packets of a call that are looked at to tell whether its rays are alike.
+const LOOKS: usize = 8;
+
+/// Rays of a class, on average, from which on rays are alike.
+const ALIKE: usize = 4;
+
+/// Whether rays are of few classes, as those that mirrors send on are, by some of the packets.
+#[inline(always)]
+pub fn are_alike<S: Lanes<LANES>>(s: S, packets: &[RayPacket], bounds: &Bounds3) -> bool {
+    let cells = Cells::new(bounds);
+    let mut met = [0u64; (CLASSES * CELLS).div_ceil(64) + 1];
+    let mut rays = 0;
+    for packet in packets.iter().step_by(packets.len().div_ceil(LOOKS).max(1)) {
+        for class in packet_classes(s, packet, &cells) {
+            let class = usize::from(class.to_bits() as u16);
+            rays += usize::from(class < CLASSES * CELLS);
+            if let Some(word) = met.get_mut(class / 64) {
+                *word |= 1 << (class % 64);
+            }
+        }
+    }
+    let classes: u32 = met[..CLASSES * CELLS / 64].iter().map(|word| word.count_ones()).sum();
+    classes as usize * ALIKE <= rays
+}
+
+/// Where rays of these classes go.
+fn place(classes: &[u16], places: &mut [Place; BATCH]) -> usize {
+    if classes.len() <= FEW_PACKETS * LANES {
         return sort_few(classes, places);
     }
     let mut counts = [0u16; CLASSES * CELLS + 1];

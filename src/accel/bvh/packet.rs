@@ -13,7 +13,7 @@ use std::mem::MaybeUninit;
 
 use self::stack::Stack;
 use super::kernel::Kernel;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, lanes_of};
 use super::leaf::{Block, Corners, FixedBlock, LANES as TRIANGLES};
 use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::prepare::{Prepared, Rays, Row};
@@ -110,7 +110,12 @@ impl<'a, const N: usize> Packet<'a, N> {
                     }
                     Child::Block(index) => self.block::<S, ANY>(s, &tree.blocks[index], lanes, walk.level.instance),
                     Child::Analytic(_) | Child::Instance(_) => {
-                        self.alone::<K, ANY>(walk, tree, current, lanes, single_stack);
+                        for lane in lanes_of(lanes) {
+                            let mut query = self.query(lane);
+                            let line = self.prepared.line(lane);
+                            walk.other::<_, _, ANY>(tree, current, line, &mut query, single_stack);
+                            self.take(lane, &query);
+                        }
                     }
                 }
             }
@@ -363,10 +368,7 @@ impl<'a, const N: usize> Packet<'a, N> {
         lanes: u32,
         stack: &mut [u64],
     ) {
-        let mut rest = lanes;
-        while rest != 0 {
-            let lane = rest.trailing_zeros() as usize;
-            rest &= rest - 1;
+        for lane in lanes_of(lanes) {
             let ray = self.prepared.local(lane);
             let mut query = self.query(lane);
             walk.kernel.fixed::<ANY>(walk, tree, start, &ray, &mut query, stack);

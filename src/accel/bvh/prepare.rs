@@ -2,7 +2,7 @@
 
 use super::lanes::Lanes;
 use super::query::{Asked, CULL_SLACK, Query};
-use super::ray::{FAR_SLACK, LEAST_SLOPE, LocalRay, MARGIN, NEAR_SLACK, Slab, USUAL_SIZES};
+use super::ray::{FAR_SLACK, LEAST_SLOPE, Line, LocalRay, MARGIN, NEAR_SLACK, Slab, USUAL_SIZES};
 use super::triangle::Shear;
 use crate::geometry::HitPacket;
 use crate::math::Vec3;
@@ -78,13 +78,38 @@ fn column<const N: usize>(rows: &[Row<N>; 3], lane: usize) -> [f32; 3] {
 }
 
 impl<const N: usize> Prepared<N> {
+    /// Rays that take no part, and nothing computed.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self {
+            rays: Rays::none(),
+            near_scale: [[0.0; N]; 3],
+            near_shift: [[0.0; N]; 3],
+            far_scale: [[0.0; N]; 3],
+            far_shift: [[0.0; N]; 3],
+            scale: [[0.0; N]; 3],
+            inverse: [[0.0; N]; 3],
+            negative: [0; 3],
+            greatest: [0; 3],
+            usual: 0,
+        }
+    }
+
     /// Prepares rays.
     #[inline(always)]
     pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>) -> Self {
+        let mut prepared = Self { rays, ..Self::none() };
+        prepared.prepare(s);
+        prepared
+    }
+
+    /// Computes all of it from the rays.
+    #[inline(always)]
+    pub fn prepare<S: Lanes<N>>(&mut self, s: S) {
         // Not by `array::map`, which is compiled without the instructions that `s` has.
         let load = |rows: &[Row<N>; 3]| [s.load(&rows[0]), s.load(&rows[1]), s.load(&rows[2])];
         let abs = |[x, y, z]: [S::F; 3]| [s.abs(x), s.abs(y), s.abs(z)];
-        let (origin, direction) = (load(&rays.origin), load(&rays.direction));
+        let (origin, direction) = (load(&self.rays.origin), load(&self.rays.direction));
         let (size, slope) = (abs(origin), abs(direction));
         let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
         let (greatest, steepest) = (most(size), most(slope));
@@ -97,37 +122,29 @@ impl<const N: usize> Prepared<N> {
         let along = pick(dx, dy, dz);
         let bits = [s.bits(is_x), s.bits(is_y) & !s.bits(is_x)];
         let (smallest, largest) = (s.splat(*USUAL_SIZES.start()), s.splat(*USUAL_SIZES.end()));
-        let mut prepared = Self {
-            near_scale: [[0.0; N]; 3],
-            near_shift: [[0.0; N]; 3],
-            far_scale: [[0.0; N]; 3],
-            far_shift: [[0.0; N]; 3],
-            scale: [[0.0; N]; 3],
-            inverse: [[0.0; N]; 3],
-            negative: [s.signs(dx), s.signs(dy), s.signs(dz)],
-            greatest: [bits[0], bits[1], !(bits[0] | bits[1])],
-            usual: s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest))),
-            rays,
-        };
-        s.store(s.div(pick(dy, dz, dx), along), &mut prepared.scale[0]);
-        s.store(s.div(pick(dz, dx, dy), along), &mut prepared.scale[1]);
-        s.store(s.div(s.splat(1.0), along), &mut prepared.scale[2]);
+        self.negative = [s.signs(dx), s.signs(dy), s.signs(dz)];
+        self.greatest = [bits[0], bits[1], !(bits[0] | bits[1])];
+        self.usual = s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest)));
+        s.store(s.div(pick(dy, dz, dx), along), &mut self.scale[0]);
+        s.store(s.div(pick(dz, dx, dy), along), &mut self.scale[1]);
+        s.store(s.div(s.splat(1.0), along), &mut self.scale[2]);
+        // Adding zero turns a negative zero into a positive one, whose bits compare as an integer.
+        s.store(s.add(s.load(&self.rays.tnear), s.splat(0.0)), &mut self.rays.tnear);
         for axis in 0..3 {
             let margin = s.mul(s.splat(MARGIN), s.add(size[axis], greatest));
             let margin = s.copysign(margin, direction[axis]);
             let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
             let scale = s.div(s.splat(1.0), scale);
-            s.store(scale, &mut prepared.inverse[axis]);
+            s.store(scale, &mut self.inverse[axis]);
             let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
             let minus = |x: S::F| s.sub(s.splat(0.0), x);
-            s.store(near, &mut prepared.near_scale[axis]);
-            s.store(far, &mut prepared.far_scale[axis]);
+            s.store(near, &mut self.near_scale[axis]);
+            s.store(far, &mut self.far_scale[axis]);
             let shift = s.mul(minus(s.add(origin[axis], margin)), near);
-            s.store(shift, &mut prepared.near_shift[axis]);
+            s.store(shift, &mut self.near_shift[axis]);
             let shift = s.mul(minus(s.sub(origin[axis], margin)), far);
-            s.store(shift, &mut prepared.far_shift[axis]);
+            s.store(shift, &mut self.far_shift[axis]);
         }
-        prepared
     }
 
     /// The axes of the shear of a ray.
@@ -150,6 +167,15 @@ impl<const N: usize> Prepared<N> {
             direction: turned(&self.rays.direction),
             scale: column(&self.scale, lane),
             inverse: [self.inverse[x][lane], self.inverse[y][lane]],
+        }
+    }
+
+    /// Where one ray starts and goes.
+    #[inline(always)]
+    pub fn line(&self, lane: usize) -> Line {
+        Line {
+            origin: Vec3::from_array(column(&self.rays.origin, lane)),
+            direction: Vec3::from_array(column(&self.rays.direction, lane)),
         }
     }
 
@@ -177,7 +203,7 @@ impl<const N: usize> Prepared<N> {
     #[inline(always)]
     pub fn query<'a>(&self, lane: usize, asked: Asked<'a>) -> Query<'a> {
         Query {
-            tnear: self.rays.tnear[lane] + 0.0,
+            tnear: self.rays.tnear[lane],
             tfar: self.rays.tfar[lane],
             cull: self.rays.tfar[lane] * CULL_SLACK,
             ids: [HitPacket::NONE; 3],

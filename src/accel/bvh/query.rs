@@ -1,6 +1,6 @@
 //! What is asked of a ray, and the nearest hit so far.
 
-use super::ray::LocalRay;
+use super::ray::Line;
 use crate::accel::{FilterHit, HitFilter};
 use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape};
 
@@ -60,6 +60,14 @@ pub struct Candidate {
     pub instance: u32,
 }
 
+impl Candidate {
+    /// Whether it precedes the nearest hit so far, at a distance and with ids, by (t, geometry, primitive, instance).
+    #[inline(always)]
+    pub fn precedes(&self, tfar: f32, ids: impl FnOnce() -> [u32; 3]) -> bool {
+        self.t < tfar || (self.t == tfar && [self.geometry, self.primitive, self.instance] < ids())
+    }
+}
+
 impl<'a> Query<'a> {
     /// A query of `ray`, along its direction times `scale`.
     #[inline(always)]
@@ -89,14 +97,12 @@ impl<'a> Query<'a> {
     /// filter accepts it; says whether it did. `uv` is asked only for a filter.
     #[inline(always)]
     pub fn offer(&mut self, candidate: &Candidate, uv: impl FnOnce() -> [f32; 2]) -> bool {
-        let ids = [candidate.geometry, candidate.primitive, candidate.instance];
-        let precedes = candidate.t < self.tfar || (candidate.t == self.tfar && ids < self.ids);
-        if !precedes || !self.accepts(candidate, uv) {
+        if !candidate.precedes(self.tfar, || self.ids) || !self.accepts(candidate, uv) {
             return false;
         }
         self.tfar = candidate.t;
         self.cull = candidate.t * CULL_SLACK;
-        self.ids = ids;
+        self.ids = [candidate.geometry, candidate.primitive, candidate.instance];
         true
     }
 
@@ -112,10 +118,10 @@ impl<'a> Query<'a> {
         &mut self,
         shape: &Shape,
         primitive: usize,
-        ray: &LocalRay,
+        line: Line,
         candidate: impl Fn(f32) -> Candidate,
     ) -> bool {
-        let hits = shape.line_hits(primitive, ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let hits = shape.line_hits(primitive, line.origin.as_dvec3(), line.direction.as_dvec3());
         let mut distances = hits.iter().map(|t| t as f32);
         distances.any(|t| self.contains(t) && self.offer(&candidate(t), || [0.0; 2]))
     }

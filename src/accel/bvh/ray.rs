@@ -38,6 +38,31 @@ pub struct Slab {
     pub negative: [usize; 3],
 }
 
+/// What the kernels ask of a ray, by axis.
+pub trait Slabs: Copy {
+    /// See [`Slab::near`].
+    fn near(self, axis: usize) -> [f32; 2];
+    /// See [`Slab::far`].
+    fn far(self, axis: usize) -> [f32; 2];
+    /// See [`Slab::negative`].
+    fn negative(self, axis: usize) -> usize;
+}
+
+impl Slabs for &Slab {
+    #[inline(always)]
+    fn near(self, axis: usize) -> [f32; 2] {
+        self.near[axis]
+    }
+    #[inline(always)]
+    fn far(self, axis: usize) -> [f32; 2] {
+        self.far[axis]
+    }
+    #[inline(always)]
+    fn negative(self, axis: usize) -> usize {
+        self.negative[axis]
+    }
+}
+
 impl Slab {
     #[inline(always)]
     fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
@@ -60,6 +85,15 @@ impl Slab {
         }
         slab
     }
+}
+
+/// Where a ray starts and goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Origin.
+    pub origin: Vec3,
+    /// Direction; distances are in its units.
+    pub direction: Vec3,
 }
 
 /// A ray in the space of the boxes and triangles it is tested against.
@@ -85,6 +119,15 @@ impl LocalRay {
             direction,
             slab: Slab::new(o, d),
             shear: Shear::new(o, d),
+        }
+    }
+
+    /// What of it is no computation.
+    #[inline(always)]
+    pub fn line(&self) -> Line {
+        Line {
+            origin: self.origin,
+            direction: self.direction,
         }
     }
 }

@@ -1,13 +1,12 @@
 //! A call's rays, put together to packets of rays that are likely to stay together.
 
 use super::Scene;
-use super::interleave::{self, Interleaved};
-use super::lanes::Lanes;
-use super::order::{BATCH, Place, Room, sort};
+use super::interleave::{self, Interleaved, Mates, Trip};
+use super::lanes::{Lanes, lanes_of};
+use super::order::{BATCH, Place, Room, are_alike, sort};
 use super::packet::Packet;
-use super::prepare::{Prepared, Rays};
+use super::prepare::Rays;
 use super::query::{Asked, Query};
-use super::ray::{LocalRay, direction_scale};
 use super::traverse::{Level, STACK, Walk};
 use super::tree::FixedTree;
 use crate::accel::HitFilter;
@@ -25,8 +24,10 @@ impl Scene {
 pub struct Plan {
     /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
     pub as_they_come: bool,
-    /// Nodes of the tree above which sorted rays go through it one by one.
+    /// Nodes of the tree above which rays go through it one by one.
     pub most_nodes: usize,
+    /// Whether they go together all the same, if they are alike. Not for occlusion.
+    pub looks: bool,
     /// Packets of a call of which the rays do so whatever the tree: few have little in common. Not for occlusion.
     pub few_packets: usize,
 }
@@ -128,23 +129,15 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
     fn one_by_one<const ANY: bool>(
         &self,
         packets: &[RayPacket],
-        places: &[Place],
-        (stack, stacks): (&mut [u64; STACK], &mut Vec<interleave::Stack>),
-        done: impl FnMut(usize, &Query<'a>),
+        (stack, room): (&mut [u64; STACK], &mut interleave::Room),
+        done: impl FnMut(&Mates),
     ) {
         let walk = Walk {
             kernel: self.kernel,
             scene: self.scene,
             level: &self.level,
         };
-        let feed = Feed {
-            call: self,
-            packets,
-            places,
-            prepared: None,
-            next: 0,
-        };
-        interleave::trace::<K, ANY>(&walk, self.tree, feed, done, stack, stacks);
+        Trip::new(walk, self.tree, self.asked).trace::<ANY>(packets, room, stack, done);
     }
 
     /// Traces one ray.
@@ -153,47 +146,6 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
         self.scene
             .trace::<K, ANY>(self.kernel, packet, lane, self.filter, stack)
     }
-}
-
-/// Prepares rays, eight at a time, and gives them one by one.
-struct Feed<'a, 'b, S, K, const N: usize> {
-    call: &'b Call<'a, S, K, N>,
-    packets: &'b [RayPacket],
-    places: &'b [Place],
-    prepared: Option<Prepared<N>>,
-    next: usize,
-}
-
-impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> interleave::Source<'a> for Feed<'a, '_, S, K, N> {
-    #[inline(always)]
-    fn next(&mut self) -> Option<(usize, LocalRay, Query<'a>)> {
-        let lane = self.next % N;
-        let rest = self.places.get(self.next..)?;
-        let place = *rest.first()? as usize;
-        if lane == 0 {
-            let rays = gather(self.packets, &rest[..rest.len().min(N)]);
-            self.prepared = Some(Prepared::new(self.call.s, rays));
-        }
-        self.next += 1;
-        let prepared = self.prepared.as_ref()?;
-        if prepared.usual >> lane & 1 == 1 {
-            return Some((place, prepared.local(lane), prepared.query(lane, self.call.asked)));
-        }
-        let ray = self.packets[place / LANES].get(place % LANES);
-        let scale = direction_scale(ray.direction);
-        let local = LocalRay::new(ray.origin, ray.direction * scale);
-        Some((place, local, Query::new(&ray, scale, self.call.asked)))
-    }
-}
-
-fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = bits.trailing_zeros() as usize;
-        (bits != 0).then(|| {
-            bits &= bits - 1;
-            lane
-        })
-    })
 }
 
 /// Nearest hits.
@@ -212,8 +164,22 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     let mut room = Room::take();
     if plan.as_they_come {
         as_they_come(&call, packets, hits, &mut room.stack);
+    } else if tree.nodes.len() > plan.most_nodes && !(plan.looks && are_alike(kernel, packets, &tree.bounds))
+        || packets.len() <= plan.few_packets
+    {
+        let Room { stack, interleave, .. } = &mut *room;
+        call.one_by_one::<false>(packets, (stack, interleave), |mates| {
+            let [geometry, primitive, instance] = mates.ids;
+            let t = mates.prepared.rays.tfar;
+            hits[mates.packet] = HitPacket {
+                geometry,
+                primitive,
+                instance,
+                t,
+            };
+        });
     } else {
-        sorted(&call, plan, packets, hits, &mut room);
+        sorted(&call, packets, hits, &mut room);
     }
     room.put();
 }
@@ -251,16 +217,12 @@ fn as_they_come<S: Lanes<N>, K: Interleaved, const N: usize>(
 #[inline(always)]
 fn sorted<S: Lanes<N>, K: Interleaved, const N: usize>(
     call: &Call<'_, S, K, N>,
-    plan: Plan,
     packets: &[RayPacket],
     hits: &mut [HitPacket],
     room: &mut Room,
 ) {
     let Room {
-        stack,
-        stacks,
-        classes,
-        places,
+        stack, classes, places, ..
     } = room;
     for (packets, hits) in packets.chunks(BATCH / LANES).zip(hits.chunks_mut(BATCH / LANES)) {
         for (packet, hits) in packets.iter().zip(&mut *hits) {
@@ -269,13 +231,7 @@ fn sorted<S: Lanes<N>, K: Interleaved, const N: usize>(
                 ..HitPacket::EMPTY
             };
         }
-        let count = sort(packets, &call.tree.bounds, classes, places);
-        if call.tree.nodes.len() > plan.most_nodes || packets.len() <= plan.few_packets {
-            call.one_by_one::<false>(packets, &places[..count], (stack, stacks), |place, query| {
-                query.store(&mut hits[place / LANES], place % LANES);
-            });
-            continue;
-        }
+        let count = sort(call.kernel, packets, &call.tree.bounds, classes, places);
         for places in places[..count].chunks(N) {
             let lanes = (1 << places.len()) - 1;
             let (packet, rest) = call.trace::<false>(gather(packets, places), lanes, stack);
@@ -311,27 +267,22 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
     let mut room = Room::take();
     let Room {
         stack,
-        stacks,
+        interleave,
         classes,
         places,
     } = &mut *room;
     for packets in packets.chunks_mut(BATCH / LANES) {
-        let count = sort(packets, &tree.bounds, classes, places);
         if tree.nodes.len() > plan.most_nodes {
             let mut found = [0u8; BATCH / LANES];
-            call.one_by_one::<true>(
-                packets,
-                &places[..count],
-                (&mut *stack, &mut *stacks),
-                |place, query| {
-                    found[place / LANES] |= u8::from(query.is_hit()) << (place % LANES);
-                },
-            );
+            call.one_by_one::<true>(packets, (&mut *stack, &mut *interleave), |mates| {
+                found[mates.packet] = mates.found as u8;
+            });
             for (packet, &found) in packets.iter_mut().zip(&found) {
                 lanes_of(found.into()).for_each(|lane| packet.tfar[lane] = f32::NEG_INFINITY);
             }
             continue;
         }
+        let count = sort(kernel, packets, &tree.bounds, classes, places);
         for places in places[..count].chunks(N) {
             let lanes = (1 << places.len()) - 1;
             let (packet, rest) = call.trace::<true>(gather(packets, places), lanes, stack);

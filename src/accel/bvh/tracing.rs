@@ -95,6 +95,7 @@ impl Tracing {
         Plan {
             as_they_come: is_camera && matches!(self.way, Way::Usual | Way::Packets),
             most_nodes,
+            looks: self.way == Way::Usual,
             few_packets: if self.way == Way::Usual { FEW_PACKETS } else { 0 },
         }
     }

@@ -5,14 +5,17 @@ use super::kernel::{BoxHits, Kernel};
 use super::leaf::{Block, Corners};
 use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::query::{Candidate, Query};
-use super::ray::LocalRay;
+use super::ray::{Line, LocalRay};
 use super::tree::{GroupTrees, Tree, mesh};
 use crate::geometry::{HitPacket, InstanceId};
 
 use super::build::MOST_LEVELS;
 
-/// Entries of a stack: each level leaves at most seven children of its node on it, and an instance has a tree of its own.
-pub const STACK: usize = 2 * (MOST_LEVELS as usize * (WIDTH - 1) + 1);
+/// Entries of a stack of one tree: each level leaves at most seven children of its node on it.
+pub const TREE_STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
+
+/// Entries of a stack: an instance has a tree of its own.
+pub const STACK: usize = 2 * TREE_STACK;
 
 /// Which trees a ray is in.
 #[derive(Clone, Copy)]
@@ -96,11 +99,9 @@ impl<K: Kernel> Walk<'_, K> {
                     let corners = block.corners(fraction, &mut corners);
                     self.block::<_, ANY>(block, corners, ray, query)
                 }
-                Child::Analytic(index) => {
-                    let (geometry, primitive) = tree.analytic[index];
-                    self.analytic(geometry.0, primitive.0, ray, query)
+                Child::Analytic(_) | Child::Instance(_) => {
+                    self.other::<_, _, ANY>(tree, current, ray.line(), query, &mut stack[depth..])
                 }
-                Child::Instance(index) => self.instance::<ANY>(index, ray, query, &mut stack[depth..]),
             };
             if ANY && found {
                 return true;
@@ -175,8 +176,28 @@ impl<K: Kernel> Walk<'_, K> {
         found
     }
 
+    /// Tests a ray against what is no node and no block of triangles; says whether it hits it.
+    #[inline(always)]
+    pub fn other<N: Node, B: Block, const ANY: bool>(
+        &self,
+        tree: &Tree<N, B>,
+        child: ChildRef,
+        line: Line,
+        query: &mut Query,
+        stack: &mut [u64],
+    ) -> bool {
+        match child.get() {
+            Child::Node(_) | Child::Block(_) => false,
+            Child::Analytic(index) => {
+                let (geometry, primitive) = tree.analytic[index];
+                self.analytic(geometry.0, primitive.0, line, query)
+            }
+            Child::Instance(index) => self.instance::<ANY>(index, line, query, stack),
+        }
+    }
+
     #[inline(never)]
-    fn analytic(&self, geometry: u32, primitive: u32, ray: &LocalRay, query: &mut Query) -> bool {
+    fn analytic(&self, geometry: u32, primitive: u32, line: Line, query: &mut Query) -> bool {
         let member = &self.scene.world.geometries()[geometry as usize];
         if member.mask & query.mask == 0 {
             return false;
@@ -187,19 +208,19 @@ impl<K: Kernel> Walk<'_, K> {
             primitive,
             instance: self.level.instance,
         };
-        query.offer_analytic(&member.shape, primitive as usize, ray, candidate)
+        query.offer_analytic(&member.shape, primitive as usize, line, candidate)
     }
 
     #[inline(never)]
-    fn instance<const ANY: bool>(&self, index: usize, ray: &LocalRay, query: &mut Query, stack: &mut [u64]) -> bool {
+    fn instance<const ANY: bool>(&self, index: usize, line: Line, query: &mut Query, stack: &mut [u64]) -> bool {
         let id = InstanceId::from_index(index);
         let instance = self.scene.world.instance(id);
         if instance.mask & query.mask == 0 {
             return false;
         }
         let object_from_world = instance.world_from_object.inverse_at(query.time);
-        let origin = object_from_world.transform_point3(ray.origin.as_dvec3());
-        let direction = object_from_world.transform_vector3(ray.direction.as_dvec3());
+        let origin = object_from_world.transform_point3(line.origin.as_dvec3());
+        let direction = object_from_world.transform_vector3(line.direction.as_dvec3());
         let ray = LocalRay::new(origin.as_vec3(), direction.as_vec3());
         let level = Level {
             trees: &self.scene.groups[instance.group.index()],

@@ -32,6 +32,49 @@ pub struct Shear {
     pub inverse: [f32; 2],
 }
 
+/// What the kernels ask of a ray, by the axes of its [`Shear`].
+pub trait Shears: Copy {
+    /// See [`Shear::axes`].
+    fn axis(self, i: usize) -> usize;
+    /// See [`Shear::origin`].
+    fn origin(self, i: usize) -> f32;
+    /// See [`Shear::direction`].
+    fn direction(self, i: usize) -> f32;
+    /// See [`Shear::scale`].
+    fn scale(self, i: usize) -> f32;
+    /// See [`Shear::inverse`].
+    fn inverse(self, i: usize) -> f32;
+    /// All of it.
+    fn shear(self) -> Shear;
+}
+
+impl Shears for &Shear {
+    #[inline(always)]
+    fn axis(self, i: usize) -> usize {
+        self.axes[i]
+    }
+    #[inline(always)]
+    fn origin(self, i: usize) -> f32 {
+        self.origin[i]
+    }
+    #[inline(always)]
+    fn direction(self, i: usize) -> f32 {
+        self.direction[i]
+    }
+    #[inline(always)]
+    fn scale(self, i: usize) -> f32 {
+        self.scale[i]
+    }
+    #[inline(always)]
+    fn inverse(self, i: usize) -> f32 {
+        self.inverse[i]
+    }
+    #[inline(always)]
+    fn shear(self) -> Shear {
+        *self
+    }
+}
+
 impl Shear {
     /// For a direction that is not zero.
     #[inline(always)]

@@ -5,12 +5,9 @@
 
 use std::mem::MaybeUninit;
 
-use crate::accel::bvh::build::MOST_LEVELS;
-use crate::accel::bvh::node::{ChildRef, WIDTH};
+use crate::accel::bvh::node::ChildRef;
 use crate::accel::bvh::prepare::Row;
-
-/// Entries of a stack.
-const STACK: usize = MOST_LEVELS as usize * (WIDTH - 1) + 1;
+use crate::accel::bvh::traverse::TREE_STACK;
 
 /// Something still to be visited.
 #[derive(Clone, Copy)]
@@ -25,7 +22,7 @@ struct Entry<const N: usize> {
 
 /// What is still to be visited, the nearest on top.
 pub struct Stack<const N: usize> {
-    entries: [MaybeUninit<Entry<N>>; STACK],
+    entries: [MaybeUninit<Entry<N>>; TREE_STACK],
     depth: usize,
 }
 
@@ -34,7 +31,7 @@ impl<const N: usize> Stack<N> {
     #[inline(always)]
     pub fn new() -> Self {
         Self {
-            entries: [const { MaybeUninit::uninit() }; STACK],
+            entries: [const { MaybeUninit::uninit() }; TREE_STACK],
             depth: 0,
         }
     }
