@@ -94,6 +94,14 @@ impl Stream {
         self.waves.iter().map(|wave| active(wave)).sum()
     }
 
+    /// This one, without some whole waves, evenly, so that about `most` rays are left.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Self {
+        let mut thinned = self.clone();
+        thinned.thin(most);
+        thinned
+    }
+
     /// Leaves out whole waves, evenly, until there are about `most` rays.
     fn thin(&mut self, most: usize) {
         let (rays, count) = (self.rays(), self.waves.len());

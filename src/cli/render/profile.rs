@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::Job;
 use super::prepare::Prepared;
-use crate::accel::{Backend, BuildOptions};
+use crate::accel::{Accel, Backend, BuildOptions};
 use crate::bench::contenders::{BuildPlan, Built, Choice, quality_name};
 use crate::bench::streams::{Stream, StreamKind};
 use crate::bench::{rates, recorded};
@@ -20,6 +20,9 @@ use crate::scene::{Scene, SceneOptions, View, ViewOverrides};
 const RAYS: usize = 1 << 16;
 /// How often.
 const TURNS: usize = 3;
+/// Rays of each kind by which the ways that are worth that are found, and how many of them are.
+const FEW_RAYS: usize = 1 << 12;
+const BEST: usize = 4;
 
 /// A kind of ray as the statistics know it, with the streams that are of it.
 type Kind = (&'static str, fn(StreamKind) -> bool);
@@ -121,22 +124,20 @@ fn fastest(world: &Arc<World>, options: &BuildOptions, streams: &[Stream], rays:
     let accels: Vec<_> = ways.iter().map(|(_, _, accel)| *accel).collect();
     let mut all = Vec::new();
     for ((name, is_of_kind), count) in KINDS.into_iter().zip(rays) {
-        // Seconds that each way needs for the recorded rays of the kind.
-        let mut seconds = vec![0.0; accels.len()];
-        let mut recorded = 0.0;
-        for stream in streams.iter().filter(|stream| is_of_kind(stream.kind)) {
-            let millions = stream.rays() as f64 * 1e-6;
-            recorded += millions;
-            for (seconds, rate) in seconds.iter_mut().zip(rates::measure(&accels, stream, TURNS)) {
-                *seconds += millions / rate.median;
-            }
-        }
-        let least = seconds.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-        let Some((best, least)) = least.filter(|_| recorded > 0.0 && count > 0) else {
+        let streams: Vec<&Stream> = streams.iter().filter(|stream| is_of_kind(stream.kind)).collect();
+        if streams.is_empty() || count == 0 {
             continue;
-        };
-        let (build, way, _) = &ways[best];
-        let mrays = recorded / least;
+        }
+        let few: Vec<Stream> = streams.iter().map(|stream| stream.thinned(FEW_RAYS)).collect();
+        let mut ranked: Vec<_> = seconds(&accels, &few, 1).into_iter().zip(0..).collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked.truncate(BEST);
+        let best: Vec<_> = ranked.iter().map(|&(_, i): &(f64, usize)| accels[i]).collect();
+        let seconds_of_best = seconds(&best, streams.iter().copied(), TURNS);
+        let least = seconds_of_best.iter().zip(&ranked).min_by(|a, b| a.0.total_cmp(b.0));
+        let Some((least, &(_, place))) = least else { continue };
+        let (build, way, _) = &ways[place];
+        let mrays = streams.iter().map(|stream| stream.rays()).sum::<usize>() as f64 * 1e-6 / least;
         all.push(Fastest {
             kind: name,
             way: format!("{build}, {way}"),
@@ -145,6 +146,18 @@ fn fastest(world: &Arc<World>, options: &BuildOptions, streams: &[Stream], rays:
         });
     }
     Ok(all)
+}
+
+/// Seconds that each of `accels` needs for the rays of `streams`.
+fn seconds<'s>(accels: &[&dyn Accel], streams: impl IntoIterator<Item = &'s Stream>, turns: usize) -> Vec<f64> {
+    let mut seconds = vec![0.0; accels.len()];
+    for stream in streams {
+        let millions = stream.rays() as f64 * 1e-6;
+        for (seconds, rate) in seconds.iter_mut().zip(rates::measure(accels, stream, turns)) {
+            *seconds += millions / rate.median;
+        }
+    }
+    seconds
 }
 
 /// What the threads did in `all` seconds of theirs.
