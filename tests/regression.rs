@@ -189,7 +189,9 @@ fn media_that_nothing_is_in_do_not_count() {
     assert!(!scene("", "").has_media());
     assert!(!scene("", "MediumInterface \"\" \"\"").has_media());
     assert!(scene("", "MediumInterface \"green\" \"\"").has_media());
-    assert!(scene("", "Material \"interface\"").has_media());
+    // A boundary between nothing and nothing is not there at all.
+    assert!(!scene("", "Material \"interface\"").has_media());
+    assert!(scene("", "Material \"interface\" MediumInterface \"green\" \"\"").has_media());
     let camera = "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" MediumInterface \"\" \"air\"";
     assert!(scene(camera, "").has_media());
 }
