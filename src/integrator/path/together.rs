@@ -8,13 +8,14 @@ use crate::desc::{Heuristic, Strategy};
 use crate::geometry::{Ray, RayPacket, Surfaces};
 use crate::integrator::direct::Origin;
 use crate::integrator::fault::Fault;
-use crate::integrator::lane::{Lane, NO_SLOT};
+use crate::integrator::lane::{Lane, NO_SLOT, Slot};
 use crate::integrator::numbers::EventLanes;
 use crate::integrator::shadow::{Contribution, NO_NOTE};
 use crate::integrator::stage::PacketVertices;
 use crate::light::{ChosenLight, LightLanes, LightSampleLanes};
 use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer, offset_ray_origin};
 use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic, warp};
+use crate::scene::Scene;
 use crate::spectrum::{SampledSpectrum, SpectrumLanes};
 
 /// What eight paths are computed with. Made once and used again and again.
@@ -63,45 +64,21 @@ impl PathIntegrator {
         stage: &mut PathStage<'_, '_>,
         packet: &PacketVertices<'_, Origin>,
     ) -> [bool; LANES] {
-        let mut taken = [false; LANES];
         // Of a path that has been split the order of what it brings would depend on the packets that its parts are in.
         let is_usual = self.strategy == Strategy::Mis && self.splitting == 1 && self.fault == Fault::None;
         if !is_usual || self.max_depth == Some(stage.depth) {
-            return taken;
+            return [false; LANES];
         }
-        let scene = stage.scene;
         let Together {
             vectorizer,
             lights,
             paths,
         } = &mut *stage.memory;
-        let surfaces = packet.surfaces.all();
-        let mut chosen: [Option<ChosenLight<'_>>; LANES] = [None; LANES];
-        for (i, lane) in packet.lanes.iter().enumerate() {
-            if lane.slot == NO_SLOT || !packet.rays.is_active(i) {
-                continue;
-            }
-            let Some(hit) = packet.hits.get(i) else { continue };
-            let Some(reflectance) = scene.lambertian(hit) else {
-                continue;
-            };
-            let lambda = &stage.slots[lane.slot as usize].lambda;
-            let albedo = match reflectance.constant() {
-                Some(spectrum) => spectrum.sample(lambda),
-                None => reflectance.reflectance_at(&packet.surface(i, hit), lambda),
-            };
-            taken[i] = true;
-            paths.albedo.set(i, albedo);
-            paths.beta.set(i, lane.beta);
-            paths.eta_scale[i] = lane.eta_scale;
-            let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
-            let light = scene.light_sampler().sample(p, n, packet.numbers.which_light()[i]);
-            paths.pmf[i] = light.map_or(1.0, |light| light.pmf);
-            chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
-        }
+        let (taken, chosen) = paths.gather(stage.scene, stage.slots, packet);
         if taken == [false; LANES] {
             return taken;
         }
+        let surfaces = packet.surfaces.all();
         let lights = lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
         let scattered = vectorizer.run(Scatter {
             rays: packet.rays,
@@ -119,6 +96,43 @@ impl PathIntegrator {
             }
         }
         taken
+    }
+}
+
+impl Paths {
+    /// Takes up the paths of `packet` that are at Lambertian surfaces; says which those are, and the light that each is to sample.
+    #[inline]
+    fn gather<'a>(
+        &mut self,
+        scene: &'a Scene,
+        slots: &'a [Slot],
+        packet: &PacketVertices<'_, Origin>,
+    ) -> ([bool; LANES], [Option<ChosenLight<'a>>; LANES]) {
+        let surfaces = packet.surfaces.all();
+        let (mut taken, mut chosen) = ([false; LANES], [None; LANES]);
+        for (i, lane) in packet.lanes.iter().enumerate() {
+            if lane.slot == NO_SLOT || !packet.rays.is_active(i) {
+                continue;
+            }
+            let Some(hit) = packet.hits.get(i) else { continue };
+            let Some(reflectance) = scene.lambertian(hit) else {
+                continue;
+            };
+            let lambda = &slots[lane.slot as usize].lambda;
+            let albedo = match reflectance.constant() {
+                Some(spectrum) => spectrum.sample(lambda),
+                None => reflectance.reflectance_at(&packet.surface(i, hit), lambda),
+            };
+            taken[i] = true;
+            self.albedo.set(i, albedo);
+            self.beta.set(i, lane.beta);
+            self.eta_scale[i] = lane.eta_scale;
+            let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
+            let light = scene.light_sampler().sample(p, n, packet.numbers.which_light()[i]);
+            self.pmf[i] = light.map_or(1.0, |light| light.pmf);
+            chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
+        }
+        (taken, chosen)
     }
 }
 
