@@ -130,15 +130,12 @@ impl Cluster {
             // From inside, every direction may be one towards a light.
             return (self.intensity / self.radius_squared.max(f32::MIN_POSITIVE)).min(GREATEST_IMPORTANCE);
         }
-        // One division: this is asked twice a level of the tree.
-        let inverse_squared = 1.0 / distance_squared;
-        let w = from_center * inverse_squared.sqrt();
+        let w = from_center / distance_squared.sqrt();
         let cos_w = self.axis.dot(w);
         let cos_w = if self.two_sided { cos_w.abs() } else { cos_w };
-        let sin_squared = self.radius_squared * inverse_squared;
         let cone = Angle {
-            sin: sin_squared.sqrt(),
-            cos: (1.0 - sin_squared).max(0.0).sqrt(),
+            sin: (self.radius_squared / distance_squared).sqrt(),
+            cos: (1.0 - self.radius_squared / distance_squared).max(0.0).sqrt(),
         };
         let normals = Angle {
             sin: self.sin_normals,
@@ -155,7 +152,7 @@ impl Cluster {
         };
         // Cosines of 90 degrees count as a little more, for the same slack.
         let cosines = least.cos.max(COSINE_SLACK) * cos_at_p.max(COSINE_SLACK);
-        (self.intensity * cosines * inverse_squared).min(GREATEST_IMPORTANCE)
+        (self.intensity * cosines / distance_squared).min(GREATEST_IMPORTANCE)
     }
 }
 
