@@ -355,6 +355,8 @@ pub struct RenderStats {
     pub photon_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// Scattering events that were taken together, by packets.
+    pub events_together: u64,
     /// The samples of each pixel that were rendered, if fewer than were planned.
     pub stopped_after: Option<u32>,
     /// Photons of caustic maps.
@@ -392,6 +394,7 @@ impl RenderStats {
         self.bounce_rays += other.bounce_rays;
         self.photon_rays += other.photon_rays;
         self.shadow_rays += other.shadow_rays;
+        self.events_together += other.events_together;
         self.caustic_photons += other.caustic_photons;
         self.global_photons += other.global_photons;
         self.dropped_samples += other.dropped_samples;

@@ -85,118 +85,9 @@ fn union_of_cones(a: (Vec3, f32), b: (Vec3, f32)) -> (Vec3, f32) {
     }
 }
 
-/// [`LightBounds`] made ready for [`Cluster::importance`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cluster {
-    center: Vec3,
-    /// Of the sphere around the box.
-    radius_squared: f32,
-    axis: Vec3,
-    intensity: f32,
-    cos_normals: f32,
-    sin_normals: f32,
-    cos_emission: f32,
-    two_sided: bool,
-}
-
-/// What rounding may take off a cosine: no light that shines on a point may have importance 0 there.
-const COSINE_SLACK: f32 = 1e-4;
-
-/// Sums of two importances stay finite.
-const GREATEST_IMPORTANCE: f32 = 1e36;
-
-impl Cluster {
-    pub fn new(light: &LightBounds) -> Self {
-        let cos_normals = (light.cos_normals - COSINE_SLACK).max(-1.0);
-        Self {
-            center: light.bounds.center(),
-            radius_squared: light.bounds.radius().powi(2),
-            axis: light.axis,
-            intensity: light.intensity,
-            cos_normals,
-            sin_normals: (1.0 - cos_normals * cos_normals).max(0.0).sqrt(),
-            cos_emission: light.cos_emission - COSINE_SLACK,
-            two_sided: light.two_sided,
-        }
-    }
-
-    /// An estimate, from above where it matters, of the irradiance at the point `p` with the normal `n` (on either side; zero:
-    /// no surface). 0 only where nothing arrives.
-    #[inline]
-    pub fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        let from_center = p - self.center;
-        let distance_squared = from_center.length_squared();
-        if distance_squared <= self.radius_squared {
-            // From inside, every direction may be one towards a light.
-            return (self.intensity / self.radius_squared.max(f32::MIN_POSITIVE)).min(GREATEST_IMPORTANCE);
-        }
-        let w = from_center / distance_squared.sqrt();
-        let cos_w = self.axis.dot(w);
-        let cos_w = if self.two_sided { cos_w.abs() } else { cos_w };
-        let cone = Angle {
-            sin: (self.radius_squared / distance_squared).sqrt(),
-            cos: (1.0 - self.radius_squared / distance_squared).max(0.0).sqrt(),
-        };
-        let normals = Angle {
-            sin: self.sin_normals,
-            cos: self.cos_normals,
-        };
-        let least = Angle::of_cos(cos_w).minus(normals).minus(cone);
-        if least.cos <= self.cos_emission {
-            return 0.0;
-        }
-        let cos_at_p = if n == Vec3::ZERO {
-            1.0
-        } else {
-            Angle::of_cos(w.dot(n).abs()).minus(cone).cos
-        };
-        // Cosines of 90 degrees count as a little more, for the same slack.
-        let cosines = least.cos.max(COSINE_SLACK) * cos_at_p.max(COSINE_SLACK);
-        (self.intensity * cosines / distance_squared).min(GREATEST_IMPORTANCE)
-    }
-}
-
-/// An angle between 0 and 180 degrees.
-#[derive(Clone, Copy)]
-struct Angle {
-    cos: f32,
-    sin: f32,
-}
-
-impl Angle {
-    fn of_cos(cos: f32) -> Self {
-        Self {
-            cos,
-            sin: (1.0 - cos * cos).max(0.0).sqrt(),
-        }
-    }
-
-    /// The difference, or 0 if `other` is larger.
-    fn minus(self, other: Self) -> Self {
-        if self.cos > other.cos {
-            return Self { cos: 1.0, sin: 0.0 };
-        }
-        Self {
-            cos: self.cos * other.cos + self.sin * other.sin,
-            sin: self.sin * other.cos - self.cos * other.sin,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn point(p: Vec3, axis: Vec3, cos_normals: f32) -> LightBounds {
-        LightBounds {
-            bounds: Bounds3::from_points([p]),
-            axis,
-            cos_normals,
-            cos_emission: 0.0,
-            intensity: 1.0,
-            two_sided: false,
-        }
-    }
 
     /// Directions all around, deterministic.
     fn directions() -> impl Iterator<Item = Vec3> {
@@ -228,38 +119,5 @@ mod tests {
         // Opposite directions have no cone but all of them.
         assert_eq!(union_of_cones((Vec3::X, 1.0), (-Vec3::X, 1.0)).1, -1.0);
         assert_eq!(union_of_cones((Vec3::X, 1.0), (Vec3::X, 0.5)), (Vec3::X, 0.5));
-    }
-
-    /// Of one point it is the irradiance itself; of a group never less than that of one of its members, whose greatest
-    /// distance is that from the far side of the sphere around them.
-    #[test]
-    fn importance_is_the_irradiance_of_a_point_and_positive_where_one_of_a_group_shines() {
-        let n = Vec3::new(0.0, 0.6, 0.8);
-        for (i, w) in directions().enumerate() {
-            let light = point(Vec3::new(0.1, -0.2, 3.0), w, 1.0);
-            let p = light.bounds.min + Vec3::new(0.3, -0.5, -2.0) * (0.1 + i as f32 / 50.0);
-            let to_p = p - light.bounds.min;
-            let cos = [w.dot(to_p.normalize()), n.dot(to_p.normalize()).abs()];
-            let expected = cos[0].max(0.0) * cos[1] / to_p.length_squared();
-            let importance = Cluster::new(&light).importance(p, n);
-            // The slack of the normals' cone is 0.8 degrees.
-            assert!(
-                (importance - expected).abs() <= 0.02 / to_p.length_squared(),
-                "{importance} {expected}"
-            );
-            assert!(importance > 0.0 || expected == 0.0);
-
-            let other = point(Vec3::new(-1.0, 0.5, 2.0), n, 0.9);
-            let group = Cluster::new(&light.union(&other));
-            let members = [light, other].map(|l| Cluster::new(&l).importance(p, n));
-            assert!(group.importance(p, n) > 0.0 || members == [0.0; 2]);
-        }
-    }
-
-    #[test]
-    fn importance_is_finite_at_the_light_itself() {
-        let light = point(Vec3::ONE, Vec3::Z, -1.0);
-        let importance = Cluster::new(&light).importance(Vec3::ONE, Vec3::X);
-        assert!(importance > 0.0 && (2.0 * importance).is_finite());
     }
 }

@@ -63,6 +63,10 @@ fn paths_taken_together_are_those_taken_one_by_one() {
                 assert!(together.iter().sum::<f32>() > 0.0, "{name} is black");
                 let rays = |stats: &lucerna::integrator::RenderStats| (stats.bounce_rays, stats.shadow_rays);
                 assert_eq!(rays(&stats), rays(&other), "{name}");
+                assert!(
+                    stats.events_together > stats.bounce_rays / 2 && other.events_together == 0,
+                    "{name}"
+                );
                 let different = together.iter().zip(&one_by_one).filter(|(a, b)| a != b).count();
                 assert_eq!(different, 0, "{name}: so many of {}", together.len());
             }

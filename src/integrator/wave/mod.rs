@@ -206,6 +206,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     numbers: &numbers,
                 };
                 is_done = estimator.shade_together(&mut stage, &packet);
+                stats.events_together += is_done.iter().map(|&is_done| u64::from(is_done)).sum::<u64>();
             }
             for (i, lane) in mates.iter().enumerate() {
                 if is_done[i] || lane.slot == NO_SLOT || !rays.is_active(i) {
