@@ -7,7 +7,7 @@ use std::process::Command;
 use super::args::BenchArgs;
 use super::memory;
 use super::report::{Channel, Reporter};
-use crate::accel::{Backend, BuildOptions, BuildQuality};
+use crate::accel::{Backend, BuildOptions};
 use crate::bench::case::{self, Case, Settings};
 use crate::bench::contenders::Choice;
 use crate::bench::machine::Machine;
@@ -157,9 +157,8 @@ impl Source<'_> {
 
 fn build_options() -> BuildOptions {
     BuildOptions {
-        quality: BuildQuality::Medium,
-        robust: true,
         threads: rayon::current_num_threads(),
+        ..BuildOptions::default()
     }
 }
 

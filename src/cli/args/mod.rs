@@ -67,6 +67,10 @@ pub struct InfoArgs {
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
 
+    /// Let Embree build what takes least memory, and is slower; Lucerna's BVH has one form
+    #[arg(long)]
+    pub compact: bool,
+
     /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
     pub defines: Vec<(String, String)>,

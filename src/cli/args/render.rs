@@ -146,6 +146,10 @@ pub struct RenderArgs {
     #[arg(long)]
     pub not_robust: bool,
 
+    /// Let Embree build what takes least memory, and is slower; Lucerna's BVH has one form
+    #[arg(long, conflicts_with = "not_robust")]
+    pub compact: bool,
+
     /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
     pub defines: Vec<(String, String)>,
