@@ -181,7 +181,7 @@ impl fmt::Display for Diagnostic {
             .chars()
             .skip(first)
             .take(SHOWN_CHARS)
-            .map(|c| if c == '\t' { ' ' } else { c })
+            .map(|c| if c.is_control() { ' ' } else { c })
             .collect();
         let margin = line.to_string().len();
         let caret = self.column - 1 - first;

@@ -220,8 +220,10 @@ fn mitsuba_scenes() {
 #[test]
 fn ply_meshes() {
     survives("ply", 16_000, |file, _| {
-        let with_attributes = ply::parse_with_attributes(file).map(drop);
-        ply::parse(file).and(with_attributes)
+        let path = Path::new("mesh.ply");
+        let with_attributes = ply::parse_with_attributes(file, path).map(drop);
+        let both = ply::parse(file, path).and(with_attributes);
+        both.map_err(|e| e.to_string())
     });
 }
 

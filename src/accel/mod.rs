@@ -176,6 +176,9 @@ pub struct BuildOptions {
     pub quality: BuildQuality,
     /// Watertight triangle tests in Embree (our BVH is always watertight).
     pub robust: bool,
+    /// The least memory, while building and after, at the price of slower queries: Embree's compact scenes, which are
+    /// always robust. Our BVH has one form.
+    pub compact: bool,
     /// Threads that may build.
     pub threads: usize,
 }
@@ -185,6 +188,7 @@ impl Default for BuildOptions {
         Self {
             quality: BuildQuality::default(),
             robust: true,
+            compact: false,
             threads: 1,
         }
     }

@@ -20,26 +20,29 @@ pub enum Family {
     EmbreeFast,
     /// Embree in its robust mode.
     EmbreeRobust,
+    /// Embree in its robust mode, in compact scenes.
+    EmbreeCompact,
     /// Our own BVH.
     Bvh,
 }
 
 impl Family {
     /// All, in the order of reports.
-    pub const ALL: [Self; 3] = [Self::EmbreeFast, Self::EmbreeRobust, Self::Bvh];
+    pub const ALL: [Self; 4] = [Self::EmbreeFast, Self::EmbreeRobust, Self::EmbreeCompact, Self::Bvh];
 
     /// For people.
     pub fn name(self) -> &'static str {
         match self {
             Self::EmbreeFast => "embree fast",
             Self::EmbreeRobust => "embree robust",
+            Self::EmbreeCompact => "embree compact",
             Self::Bvh => "bvh",
         }
     }
 
     fn backend(self) -> Backend {
         match self {
-            Self::EmbreeFast | Self::EmbreeRobust => Backend::Embree,
+            Self::EmbreeFast | Self::EmbreeRobust | Self::EmbreeCompact => Backend::Embree,
             Self::Bvh => Backend::Bvh,
         }
     }
@@ -69,7 +72,14 @@ impl BuildPlan {
         let families = Family::ALL
             .into_iter()
             .filter(|family| Backend::AVAILABLE.contains(&family.backend()));
-        let of_quality = |quality| families.clone().map(move |family| Self { family, quality });
+        // Compact scenes have no spatial splits: those of high quality are those of medium quality.
+        let exists = |plan: &Self| plan.family != Family::EmbreeCompact || plan.quality != BuildQuality::High;
+        let of_quality = |quality| {
+            families
+                .clone()
+                .map(move |family| Self { family, quality })
+                .filter(exists)
+        };
         [BuildQuality::High, BuildQuality::Medium, BuildQuality::Low]
             .into_iter()
             .flat_map(of_quality)
@@ -93,9 +103,11 @@ impl BuildPlan {
     pub fn is_wanted(&self, choice: &Choice) -> bool {
         let ways = match self.family {
             #[cfg(feature = "embree")]
-            Family::EmbreeFast | Family::EmbreeRobust => embree_ways().into_iter().map(|way| way.0).collect(),
+            Family::EmbreeFast | Family::EmbreeRobust | Family::EmbreeCompact => {
+                embree_ways().into_iter().map(|way| way.0).collect()
+            }
             #[cfg(not(feature = "embree"))]
-            Family::EmbreeFast | Family::EmbreeRobust => Vec::new(),
+            Family::EmbreeFast | Family::EmbreeRobust | Family::EmbreeCompact => Vec::new(),
             Family::Bvh => Bvh::variant_names(),
         };
         [USUAL.to_owned()]
@@ -127,21 +139,22 @@ impl BuildPlan {
         let options = BuildOptions {
             quality: self.quality,
             robust: self.family != Family::EmbreeFast,
+            compact: self.family == Family::EmbreeCompact,
             threads,
         };
         let start = Instant::now();
         let (usual, ways): (Box<dyn Accel>, Ways) = match self.family {
             #[cfg(feature = "embree")]
-            Family::EmbreeFast | Family::EmbreeRobust => {
+            Family::EmbreeFast | Family::EmbreeRobust | Family::EmbreeCompact => {
                 let scene = EmbreeScene::build(world, &options)?;
                 let way = |(name, calls)| (name, Box::new(scene.calling(calls)) as Box<dyn Accel>);
                 let ways = embree_ways();
-                let ways = ways.into_iter().filter(|(_, calls)| calls.return_from(world));
+                let ways = ways.into_iter().filter(|(_, calls)| calls.return_from(world, &options));
                 let ways = ways.map(way).collect();
                 (Box::new(scene), ways)
             }
             #[cfg(not(feature = "embree"))]
-            Family::EmbreeFast | Family::EmbreeRobust => {
+            Family::EmbreeFast | Family::EmbreeRobust | Family::EmbreeCompact => {
                 (crate::accel::build(Backend::Embree, world, &options)?, Vec::new())
             }
             Family::Bvh => {

@@ -2,12 +2,13 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::process::Command;
 
 use super::args::BenchArgs;
+use super::check_writable;
 use super::memory;
+use super::pin::pin;
 use super::report::{Channel, Reporter};
-use crate::accel::{Backend, BuildOptions, BuildQuality};
+use crate::accel::{Backend, BuildOptions};
 use crate::bench::case::{self, Case, Settings};
 use crate::bench::contenders::Choice;
 use crate::bench::machine::Machine;
@@ -25,7 +26,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         pin(cpus)?;
     }
     for path in [&args.json, &args.html].into_iter().flatten() {
-        std::fs::File::create(path).map_err(|e| Error::io("create", path, e))?;
+        check_writable(path)?;
     }
     let settings = Settings {
         turns: args.turns as usize,
@@ -88,22 +89,6 @@ fn command() -> String {
         .join(" ")
 }
 
-/// Confines this process, which has one thread so far, to processors.
-fn pin(cpus: &str) -> Result<()> {
-    let pid = std::process::id().to_string();
-    let output = Command::new("taskset").args(["-c", "-p", cpus, &pid]).output();
-    match output {
-        Ok(output) if output.status.success() => Ok(()),
-        Ok(output) => {
-            let message = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-            Err(Error::Usage(format!(
-                "--pin {cpus}: expected processors that there are, as in 0,2-3 ({message})"
-            )))
-        }
-        Err(error) => Err(Error::Usage(format!("--pin needs `taskset` (of util-linux): {error}"))),
-    }
-}
-
 fn write_files(args: &BenchArgs, report: &Report) -> Result<()> {
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(report).map_err(|e| Error::io("write", path, e.into()))?;
@@ -157,9 +142,8 @@ impl Source<'_> {
 
 fn build_options() -> BuildOptions {
     BuildOptions {
-        quality: BuildQuality::Medium,
-        robust: true,
         threads: rayon::current_num_threads(),
+        ..BuildOptions::default()
     }
 }
 

@@ -68,6 +68,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
     let options = SceneOptions {
         backend: args.backend,
         build: BuildOptions {
+            compact: args.compact,
             threads,
             ..BuildOptions::default()
         },

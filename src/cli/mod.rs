@@ -7,16 +7,19 @@ mod convert;
 mod info;
 mod list;
 mod memory;
+mod pin;
 mod render;
 mod report;
 mod stats;
 
 use std::ffi::OsString;
+use std::fs::OpenOptions;
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use args::{Cli, Command};
 
 /// Parses `args` and does what they say. Each error goes to `print_error` as it happens: one failed scene does not stop the
@@ -46,4 +49,10 @@ pub fn run(args: impl IntoIterator<Item = OsString>, print_error: &dyn Fn(&Error
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Checks that a file can be written, and leaves what is in it until there is something else to be written.
+fn check_writable(path: &Path) -> Result<()> {
+    let opened = OpenOptions::new().write(true).create(true).truncate(false).open(path);
+    opened.map(drop).map_err(|e| Error::io("create", path, e))
 }

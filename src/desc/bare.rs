@@ -5,8 +5,6 @@
 //! place.
 
 use std::fmt::Write;
-use std::fs::File;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,7 +12,7 @@ use glam::Vec3;
 
 use super::obj::mtl::{self, MtlMaterial};
 use super::{MeshDesc, ParseOptions, SceneDesc, ShapeKind, obj, pbrt, ply};
-use crate::error::{Diagnostic, Error, Result, Severity};
+use crate::error::{Diagnostic, Result};
 
 /// Whether a file is a mesh, by its extension.
 pub fn is_mesh(path: &Path) -> bool {
@@ -65,15 +63,7 @@ struct Part {
 }
 
 fn read_ply(path: &Path) -> Result<Subject> {
-    let unreadable = |source| Error::io("read", path, source);
-    let metadata = File::open(path).and_then(|file| file.metadata()).map_err(unreadable)?;
-    if metadata.is_dir() {
-        return Err(unreadable(io::ErrorKind::IsADirectory.into()));
-    }
-    let file = ply::load(path).map_err(|message| {
-        let place = Diagnostic::new(Severity::Error, path, &[], 0..0, message);
-        Error::Scene(vec![place])
-    })?;
+    let file = ply::load(path)?;
     Ok(Subject {
         parts: vec![Part {
             mesh: file.mesh,

@@ -5,10 +5,25 @@ use std::sync::Arc;
 
 use super::ParseOptions;
 use super::suggest;
-use crate::error::{Diagnostic, Severity, SourceMap, Span};
+use crate::error::{Diagnostic, Error, Severity, SourceMap, Span};
 
 /// After so many errors reading stops, and so many warnings are kept: whoever has more will want to fix these first.
 const MOST: usize = 50;
+
+/// Why a scene cannot have a mesh that it names: the place in the mesh's file, and what is wrong there first of all.
+pub(in crate::desc) fn mesh_problem(path: &Path, error: &Error) -> String {
+    let path = path.display();
+    match error {
+        Error::Scene(diagnostics) if !diagnostics.is_empty() => {
+            let Diagnostic {
+                line, column, message, ..
+            } = &diagnostics[0];
+            format!("cannot read the mesh {path}:{line}:{column}: {message}")
+        }
+        Error::Io { source, .. } => format!("cannot read the mesh {path}: {source}"),
+        other => format!("cannot read the mesh {path}: {other}"),
+    }
+}
 
 /// The files read so far, and what was found wrong in them.
 #[derive(Debug, Default)]
@@ -56,9 +71,9 @@ impl Report {
     /// What a span covers, to be quoted in a message: at most some 40 characters.
     pub fn excerpt(&self, span: Span) -> String {
         const LONGEST: usize = 40;
-        let text = String::from_utf8_lossy(self.bytes(span));
+        let text = String::from_utf8_lossy(self.bytes(span)).replace(char::is_control, " ");
         match text.char_indices().nth(LONGEST) {
-            None => text.into_owned(),
+            None => text,
             Some((cut, _)) => format!("{}...", &text[..cut]),
         }
     }

@@ -21,13 +21,23 @@ fn is_full() -> bool {
     std::env::var_os("LUCERNA_TEST_TIER").is_some_and(|tier| tier == "full")
 }
 
-/// All backends over a world, in robust mode, by name: those that can be chosen, and every way that our BVH has to trace.
+/// All backends over a world, in robust mode, by name: those that can be chosen, Embree's compact scenes, and every way that our BVH has
+/// to trace.
 fn backends(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
     let options = BuildOptions::default();
     let mut backends: Vec<(String, Box<dyn Accel>)> = Backend::AVAILABLE
         .iter()
         .map(|&backend| (backend.to_string(), build(backend, world, &options).unwrap()))
         .collect();
+    #[cfg(feature = "embree")]
+    {
+        let compact = BuildOptions {
+            compact: true,
+            ..options
+        };
+        let scene = build(Backend::Embree, world, &compact).unwrap();
+        backends.push(("embree, compact".into(), scene));
+    }
     for (name, bvh) in Bvh::build(world, &options).variants() {
         backends.push((format!("bvh, {name}"), Box::new(bvh)));
     }
@@ -46,24 +56,28 @@ fn configurations(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>)> {
             all.push((format!("bvh, {quality:?} quality, {name}"), Box::new(bvh)));
         }
         #[cfg(feature = "embree")]
-        {
-            use lucerna::accel::embree::{Calls, EmbreeScene, Entry};
-            let scene = EmbreeScene::build(world, &options).unwrap();
-            for &entry in Entry::AVAILABLE {
-                for coherent in [false, true] {
-                    let calls = Calls { entry, coherent };
-                    if !calls.return_from(world) {
-                        continue;
-                    }
-                    all.push((
-                        format!("embree, {quality:?} quality, {calls:?}"),
-                        Box::new(scene.calling(calls)),
-                    ));
-                }
-            }
+        for compact in [false, true] {
+            all.extend(calls_of_embree(world, &BuildOptions { compact, ..options }));
         }
     }
     all
+}
+
+/// Every call of Embree through one build.
+#[cfg(feature = "embree")]
+fn calls_of_embree(world: &Arc<World>, options: &BuildOptions) -> Vec<(String, Box<dyn Accel>)> {
+    use lucerna::accel::embree::{Calls, EmbreeScene, Entry};
+    let scene = EmbreeScene::build(world, options).unwrap();
+    let all = Entry::AVAILABLE
+        .iter()
+        .flat_map(|&entry| [false, true].map(|coherent| Calls { entry, coherent }));
+    let name = |calls| {
+        let compact = if options.compact { ", compact" } else { "" };
+        format!("embree, {:?} quality{compact}, {calls:?}", options.quality)
+    };
+    all.filter(|calls| calls.return_from(world, options))
+        .map(|calls| (name(calls), Box::new(scene.calling(calls)) as Box<dyn Accel>))
+        .collect()
 }
 
 /// What each ray hits, with the distance.

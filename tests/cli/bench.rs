@@ -170,3 +170,26 @@ fn what_makes_no_sense_is_refused() {
         sandbox.lucerna(arguments).expect(2);
     }
 }
+
+#[test]
+fn a_report_is_replaced_when_there_is_a_new_one() {
+    let sandbox = Sandbox::new();
+    sandbox.write("r.json", "old");
+    sandbox
+        .lucerna(&["bench", "missing.pbrt", "--json", "r.json"])
+        .expect(1);
+    assert_eq!(std::fs::read_to_string(sandbox.path("r.json")).unwrap(), "old");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn processors_that_are_not_there_are_refused_with_those_that_are() {
+    let sandbox = Sandbox::new();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let list = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
+    let there = format!("of those that there are: {}\n", list.unwrap().trim());
+    for cpus in ["0-65535", "65535", "none"] {
+        let arguments = ["bench", "ball.pbrt", "--pin", cpus];
+        sandbox.lucerna(&arguments).expect(2).says(&there);
+    }
+}

@@ -2,7 +2,15 @@
 
 use serde_json::Value;
 
-use crate::Sandbox;
+use crate::{Run, Sandbox};
+
+/// The events of a run with `--json`.
+fn events(run: &Run) -> Vec<Value> {
+    let text = run.stdout();
+    text.lines()
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect()
+}
 
 #[test]
 fn statistics_have_every_promised_key() {
@@ -62,11 +70,7 @@ fn json_lines_tell_progress_results_and_errors() {
     let run = sandbox
         .lucerna(&["render", "ball.pbrt", "bad.pbrt", "-o", "{scene}.png", "--json"])
         .expect(2);
-    let lines: Vec<Value> = run
-        .stdout()
-        .lines()
-        .map(|line| serde_json::from_str(line).expect(line))
-        .collect();
+    let lines = events(&run);
     let events: Vec<_> = lines
         .iter()
         .map(|line| line["event"].as_str().expect("an event"))
@@ -138,22 +142,9 @@ fn a_profile_says_where_the_time_went() {
 #[test]
 fn renders_from_one_side_have_progress_and_statistics() {
     let sandbox = Sandbox::new();
-    let run = sandbox
-        .lucerna(&[
-            "render",
-            "ball.pbrt",
-            "--integrator",
-            "bdpt",
-            "--strategies",
-            "out",
-            "--json",
-        ])
-        .expect(0);
-    let lines: Vec<Value> = run
-        .stdout()
-        .lines()
-        .map(|line| serde_json::from_str(line).expect(line))
-        .collect();
+    let strategies = ["--integrator", "bdpt", "--strategies", "out", "--json"];
+    let arguments = [&["render", "ball.pbrt"], &strategies[..]].concat();
+    let lines = events(&sandbox.lucerna(&arguments).expect(0));
     let mut layers: Vec<_> = lines
         .iter()
         .filter(|line| line["event"] == "progress" && line["done"] == 1.0)

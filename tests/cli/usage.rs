@@ -10,14 +10,17 @@ fn help_and_version_are_for_standard_output() {
         version.starts_with(&format!("lucerna {} (Embree: ", env!("CARGO_PKG_VERSION"))),
         "{version}"
     );
-    for command in ["render", "info", "compare"] {
-        assert!(
-            sandbox
-                .lucerna(&[command, "--help"])
-                .expect(0)
-                .stdout()
-                .contains("Usage: lucerna")
-        );
+    for (command, text) in [
+        ("render", "Several scenes, and several cameras"),
+        ("info", "Usage: lucerna info"),
+        ("compare", "Prints one JSON object"),
+        ("convert", "The file, read back, is the same scene"),
+        ("list", "The scene reader goes by the same tables"),
+        ("bench", "Records what a render of each scene asks"),
+    ] {
+        let help = sandbox.lucerna(&[command, "--help"]).expect(0).stdout();
+        let words: Vec<_> = help.split_whitespace().collect();
+        assert!(words.join(" ").contains(text), "{help}");
     }
     let help = sandbox.lucerna(&["render", "--help"]).expect(0).stdout();
     for option in [
@@ -54,6 +57,10 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
             "invalid value 'magic' for '--integrator <NAME>'",
         ),
         (&["render", "ball.pbrt", "--backend", "magic"], "magic"),
+        (
+            &["render", "ball.pbrt", "--threads", "5000"],
+            "expected a whole number from 1 to 4096",
+        ),
         (&["render", "ball.pbrt", "--spp", "0"], "expected a whole number from 1"),
         (
             &["render", "ball.pbrt", "--spp", "-1"],

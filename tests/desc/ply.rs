@@ -1,5 +1,7 @@
 //! PLY meshes in all encodings, and bad ones.
 
+use std::path::Path;
+
 use glam::{Vec2, Vec3};
 use lucerna::desc::{AttributeDomain, MeshDesc, ply};
 
@@ -49,8 +51,16 @@ impl Writer {
     put!(u8: u8, i16: i16, i32: i32, u32: u32, f32: f32, f64: f64);
 
     fn read(&self) -> Result<MeshDesc, String> {
-        ply::parse(&self.bytes)
+        parse(&self.bytes)
     }
+}
+
+fn parse(content: &[u8]) -> Result<MeshDesc, String> {
+    ply::parse(content, Path::new("m.ply")).map_err(|e| e.to_string())
+}
+
+fn parse_with_attributes(content: &[u8]) -> Result<MeshDesc, String> {
+    ply::parse_with_attributes(content, Path::new("m.ply")).map_err(|e| e.to_string())
 }
 
 #[test]
@@ -99,7 +109,7 @@ fn texture_coordinates_have_many_names() {
         let text = triangle()
             .replace("property float z\n", &names)
             .replace("0 0 0\n1 0 0\n0 1 0\n", "0 0 0 .5 1\n1 0 0 1 0\n0 1 0 0 0\n");
-        let mesh = ply::parse(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+        let mesh = parse(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(mesh.uvs, [Vec2::new(0.5, 1.0), Vec2::X, Vec2::ZERO]);
     }
 }
@@ -112,47 +122,106 @@ fn triangle() -> String {
 
 #[test]
 fn bad_files_are_refused_with_the_place() {
-    assert!(ply::parse(triangle().as_bytes()).is_ok());
+    assert!(parse(triangle().as_bytes()).is_ok());
     for (from, to, message) in [
-        ("ply\n", "pyl\n", "not a PLY file"),
-        ("ascii", "ebcdic", "line 2: unknown format"),
-        ("format ascii 1.0\n", "", "no `format`"),
-        ("end_header", "end_headr", "line 9"),
+        ("ply\n", "pyl\n", "m.ply:1:1: error: this is not a PLY file"),
+        ("ascii", "ebcdic", "m.ply:2:8: error: unknown format: expected `ascii`"),
+        ("format ascii 1.0\n", "", "m.ply:8:1: error: the header has no `format`"),
+        (
+            "end_header",
+            " end_headr",
+            "m.ply:9:2: error: expected `format`, `element`",
+        ),
         (
             "element vertex 3",
             "element vertex three",
-            "line 3: expected the number of rows",
+            "m.ply:3:16: error: expected the number of rows",
         ),
-        ("property float y", "property flot y", "line 5: expected a type"),
-        ("property float y", "property float v", "`x`, `y` and `z`"),
-        ("element vertex 3\n", "", "line 3: a property before any element"),
-        ("list uchar", "list float", "line 8"),
-        ("uchar int", "uchar float", "list of integers"),
-        ("vertex_indices", "corners", "list of integers"),
-        ("element face 1", "element face 0", "no vertices or no faces"),
+        (
+            "property float y",
+            "property flot y",
+            "m.ply:5:1: error: expected a type",
+        ),
+        (
+            "property float y",
+            "property float v",
+            "m.ply:3:1: error: the vertices have no properties `x`, `y`",
+        ),
+        (
+            "element vertex 3\n",
+            "",
+            "m.ply:3:1: error: a property before any element",
+        ),
+        ("list uchar", "list float", "m.ply:8:1: error: expected a type"),
+        (
+            "uchar int",
+            "uchar float",
+            "m.ply:7:1: error: the faces have no list of integers",
+        ),
+        (
+            "vertex_indices",
+            "corners",
+            "m.ply:7:1: error: the faces have no list of integers",
+        ),
+        (
+            "element face 1",
+            "element face 0",
+            "m.ply:7:1: error: there are no vertices or no faces",
+        ),
+        (
+            "element vertex 3",
+            "element vertex 0",
+            "m.ply:3:1: error: there are no vertices or no faces",
+        ),
         (
             "element vertex 3",
             "element vertex 4",
-            "line 13: the file ends before its data do",
+            "m.ply:13:8: error: the file ends before its data do",
         ),
         (
             "element vertex 3",
             "element vertex 18446744073709551615",
-            "too short for",
+            "m.ply:3:1: error: the file is too short for",
         ),
-        ("element face 1", "element face 123456789012", "too short for"),
-        ("1 0 0\n", "1 x 0\n", "line 11: expected a number"),
-        ("1 0 0\n", "1 nan 0\n", "position of vertex 1 is not finite"),
-        ("1 0 0\n", "1 1e39 0\n", "position of vertex 1 is not finite"),
-        ("3 0 1 2", "3 0 1 3", "has the vertex 3, but there are 3"),
-        ("3 0 1 2", "3 0 1 -1", "line 13: expected an integer"),
-        ("3 0 1 2", "3 0 1 1.5", "line 13: expected an integer"),
-        ("3 0 1 2", "3000000000 0 1 2", "line 13: the file ends"),
-        ("3 0 1 2", "2 0 1", "no vertices or no faces"),
+        (
+            "element face 1",
+            "element face 123456789012",
+            "m.ply:7:1: error: the file is too short for",
+        ),
+        ("1 0 0\n", "1 x 0\n", "m.ply:11:3: error: expected a number"),
+        (
+            "1 0 0\n",
+            "1 nan 0\n",
+            "m.ply:3:1: error: the position of vertex 1 is not finite",
+        ),
+        (
+            "1 0 0\n",
+            "1 1e39 0\n",
+            "m.ply:3:1: error: the position of vertex 1 is not finite",
+        ),
+        (
+            "3 0 1 2",
+            "3 0 1 3",
+            "m.ply:7:1: error: a face has the vertex 3, but there are 3",
+        ),
+        ("3 0 1 2", "3 0 1 -1", "m.ply:13:7: error: expected an integer"),
+        ("3 0 1 2", "3 0 1 1.5", "m.ply:13:7: error: expected an integer"),
+        ("3 0 1 2", "3000000000 0 1 2", "m.ply:13:17: error: the file ends"),
+        (
+            "3 0 1 2",
+            "2 0 1",
+            "m.ply:7:1: error: there are no vertices or no faces",
+        ),
     ] {
-        let error = ply::parse(triangle().replacen(from, to, 1).as_bytes()).expect_err(to);
-        assert!(error.contains(message), "{to}: {error}");
+        let error = parse(triangle().replacen(from, to, 1).as_bytes()).expect_err(to);
+        assert!(error.starts_with(message), "{to}: {error}");
     }
+    let open = "ply\nformat ascii 1.0\ncomment and nothing more";
+    let error = parse(open.as_bytes()).expect_err("an open header");
+    assert!(
+        error.starts_with("m.ply:3:1: error: the file ends before `end_header`"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -166,8 +235,11 @@ fn truncated_binary_files_are_refused() {
     file.i32(3).i32(0).i32(1).i32(2);
     assert!(file.read().is_ok());
     for length in 0..file.bytes.len() {
-        let error = ply::parse(&file.bytes[..length]).expect_err("truncated");
-        assert!(length < start || error.contains("byte "), "{error}");
+        let error = parse(&file.bytes[..length]).expect_err("truncated");
+        assert!(
+            length < start || error.starts_with("m.ply:4:1: ") || error.starts_with("m.ply:8:1: "),
+            "{error}"
+        );
     }
 }
 
@@ -207,7 +279,7 @@ fn attributes_are_read_if_they_are_asked_for() {
             .for_each(|c| binary.extend(c.to_be_bytes()));
     }
     for content in [text.as_bytes(), &binary] {
-        let mesh = ply::parse_with_attributes(content).unwrap_or_else(|e| panic!("{e}"));
+        let mesh = parse_with_attributes(content).unwrap_or_else(|e| panic!("{e}"));
         let [color, heat, bend, paint] = &mesh.attributes[..] else {
             panic!("{:?}", mesh.attributes)
         };
@@ -220,9 +292,9 @@ fn attributes_are_read_if_they_are_asked_for() {
         assert_eq!((paint.name.as_str(), paint.channels), ("face_paint_color", 3));
         assert_eq!(paint.values, [0.25, 0.5, 4.0, 0.25, 0.5, 4.0, 0.25, 0.5, 3.0]);
         assert_eq!(paint.domain, AttributeDomain::Triangles);
-        assert!(ply::parse(content).is_ok_and(|mesh| mesh.attributes.is_empty() && mesh.indices.len() == 3));
+        assert!(parse(content).is_ok_and(|mesh| mesh.attributes.is_empty() && mesh.indices.len() == 3));
     }
     let endless = text.replace("0.25 0.5", "0.25 inf");
-    let error = ply::parse_with_attributes(endless.as_bytes()).expect_err("not finite");
+    let error = parse_with_attributes(endless.as_bytes()).expect_err("not finite");
     assert!(error.contains("face_paint_color"), "{error}");
 }

@@ -72,7 +72,7 @@ impl Bvh {
     /// Builds it, in the rayon pool of the caller. The tree does not depend on the number of threads.
     ///
     /// Of low quality it is built by clustering, of medium quality by the surface area heuristic with 16 bins along each axis, of high
-    /// quality with 32 bins and spatial splits. [`BuildOptions::robust`] makes no difference.
+    /// quality with 32 bins and spatial splits. [`BuildOptions::robust`] and [`BuildOptions::compact`] make no difference.
     pub fn build(world: &Arc<World>, options: &BuildOptions) -> Self {
         let quality = options.quality;
         let groups = world.groups().par_iter();

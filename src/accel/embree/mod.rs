@@ -91,14 +91,15 @@ pub struct Calls {
 }
 
 impl Calls {
-    /// Whether they come back from `world` for every ray. With AVX-512, Embree 3.13.5 traces coherent occlusion of 16 rays, streams
-    /// among them, octant by octant, and keeps the octants in a register that it does not save while it calls back or goes into an
-    /// instance: after that it may look for them for ever. Seen with instances of meshes, of curves and of quadrics.
-    pub fn return_from(self, world: &World) -> bool {
+    /// Whether they come back from `world`, built by `options`, for every ray. With AVX-512, Embree 3.13.5 traces coherent occlusion of
+    /// 16 rays, streams among them, octant by octant, and keeps the octants in a register that it does not save while it calls back or
+    /// goes into an instance: after that it may look for them for ever. Seen with instances of meshes, of curves and of quadrics, and in
+    /// compact scenes with meshes alone.
+    pub fn return_from(self, world: &World, options: &BuildOptions) -> bool {
         let is_analytic = |geometry: &Geometry| !matches!(geometry.shape, Shape::Mesh(_));
         let has_16_lanes = matches!(self.entry, Entry::Packet16 | Entry::Stream);
         let calls_back = !world.instances().is_empty() || world.geometries().iter().any(is_analytic);
-        !(self.coherent && has_16_lanes && calls_back)
+        !(self.coherent && has_16_lanes && (calls_back || options.compact))
     }
 }
 

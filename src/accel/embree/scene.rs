@@ -32,11 +32,14 @@ impl SceneHandle {
             BuildQuality::Medium => ffi::RTC_BUILD_QUALITY_MEDIUM,
             BuildQuality::High => ffi::RTC_BUILD_QUALITY_HIGH,
         };
-        let flags = if options.robust {
-            ffi::RTC_SCENE_FLAG_ROBUST
-        } else {
-            ffi::RTC_SCENE_FLAG_NONE
-        };
+        let mut flags = ffi::RTC_SCENE_FLAG_NONE;
+        // With the fast test in compact scenes, what a stream answers for a ray depends on the others (Embree 3.13.5).
+        if options.robust || options.compact {
+            flags |= ffi::RTC_SCENE_FLAG_ROBUST;
+        }
+        if options.compact {
+            flags |= ffi::RTC_SCENE_FLAG_COMPACT;
+        }
         // SAFETY: the device is live.
         let handle = unsafe { ffi::rtcNewScene(device.handle()) };
         if handle.is_null() {

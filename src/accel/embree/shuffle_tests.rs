@@ -31,7 +31,7 @@ fn ball(rings: u32) -> TriangleMesh {
     TriangleMesh::new(vec![vertices], indices).unwrap()
 }
 
-fn scene(robust: bool) -> EmbreeScene {
+fn scene(robust: bool, compact: bool) -> EmbreeScene {
     let mut world = WorldBuilder::default();
     let mesh = world.add_geometry(Geometry::opaque(Shape::Mesh(ball(24))));
     let spheres = (0..20)
@@ -56,6 +56,7 @@ fn scene(robust: bool) -> EmbreeScene {
     let world = Arc::new(world.build().unwrap());
     let options = BuildOptions {
         robust,
+        compact,
         ..BuildOptions::default()
     };
     EmbreeScene::build(&world, &options).unwrap()
@@ -131,10 +132,14 @@ fn differences(scene: &EmbreeScene, kind: RayKind, count: usize) -> usize {
 
 #[test]
 fn kinds_that_are_called_mate_independent_are() {
-    for robust in [true, false] {
-        let scene = scene(robust);
+    for (robust, compact) in [(true, false), (false, false), (true, true)] {
+        let scene = scene(robust, compact);
         for kind in RayKind::ALL.into_iter().filter(|&kind| scene.is_mate_independent(kind)) {
-            assert_eq!(differences(&scene, kind, 60_000), 0, "{kind:?}, robust: {robust}");
+            assert_eq!(
+                differences(&scene, kind, 60_000),
+                0,
+                "{kind:?}, robust: {robust}, compact: {compact}"
+            );
         }
     }
 }

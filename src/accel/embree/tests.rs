@@ -122,10 +122,11 @@ pub fn hit(geometry: u32, primitive: u32, instance: Option<u32>) -> Hit {
 #[test]
 fn a_triangle_is_hit_inside_and_within_the_segment() {
     for quality in [BuildQuality::Low, BuildQuality::Medium, BuildQuality::High] {
-        for robust in [true, false] {
+        for (robust, compact) in [(true, false), (false, false), (true, true)] {
             let options = BuildOptions {
                 quality,
                 robust,
+                compact,
                 threads: 2,
             };
             let scene = EmbreeScene::build(&flat([triangle(&[0.0])]), &options).unwrap();

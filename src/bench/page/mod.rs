@@ -55,6 +55,7 @@ fn title(family: Family) -> &'static str {
     match family {
         Family::EmbreeFast => "Embree, fast (not watertight)",
         Family::EmbreeRobust => "Embree, robust",
+        Family::EmbreeCompact => "Embree, robust and compact",
         Family::Bvh => "Lucerna's BVH (watertight)",
     }
 }

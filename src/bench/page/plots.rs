@@ -12,6 +12,7 @@ pub fn class(family: Family) -> &'static str {
     match family {
         Family::EmbreeFast => "embree-fast",
         Family::EmbreeRobust => "embree-robust",
+        Family::EmbreeCompact => "embree-compact",
         Family::Bvh => "bvh",
     }
 }
@@ -40,6 +41,7 @@ pub fn bars(stream: &StreamReport, results: &[&RateReport]) -> String {
         let name = match (is_usual, result.family) {
             (true, Family::EmbreeFast) => "Embree fast, as in renders",
             (true, Family::EmbreeRobust) => "Embree robust, as in renders",
+            (true, Family::EmbreeCompact) => "Embree compact, as in renders",
             (true, Family::Bvh) => "Lucerna's BVH, as in renders",
             _ => &result.way,
         };

@@ -1,18 +1,15 @@
-//! The arguments of `lucerna bench`.
+//! `lucerna bench` as typed.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::values::{Threads, parse_resolution, parse_seed, parse_threads};
+use super::values::{Threads, parse_resolution, parse_seed, parse_threads, parse_within};
 use crate::bench::synthetic::Recipe;
 use crate::integrator::Integrator;
 
-/// Measure intersection backends on the rays of renders.
-///
-/// Records what a render of each scene asks of its backend: camera rays, bounces by depth, shadow rays, photons. Then traces the same rays
-/// through Embree and through Lucerna's own BVH, by every call and way that they have, side by side.
+/// The arguments of `lucerna bench`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -22,7 +19,7 @@ Examples:
   lucerna bench --rays pool.rays --only bvh            (replays)
   lucerna bench scenes/*.pbrt --threads 1..4 --only high --json rates.json")]
 pub struct BenchArgs {
-    /// Scene files
+    /// Scene files, or meshes (.ply, .obj)
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
 
@@ -56,12 +53,12 @@ pub struct BenchArgs {
     pub pin: Option<String>,
 
     /// How often each backend traces each ray
-    #[arg(long, value_name = "N", default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, allow_negative_numbers = true, value_parser = |text: &str| parse_within(text, 1..=1000))]
     pub turns: u32,
 
     /// About so many rays of each kind
     #[arg(long, value_name = "N", default_value_t = 1 << 17, allow_negative_numbers = true,
-        value_parser = clap::value_parser!(u32).range(1..=1 << 26))]
+        value_parser = |text: &str| parse_within(text, 1..=1 << 26))]
     pub count: u32,
 
     /// Every way to trace with builds of every quality; else only with those of high quality, and others as renders trace

@@ -39,33 +39,51 @@ pub struct Cli {
     pub command: Command,
 }
 
-/// The subcommands.
+/// The subcommands. What their helps say is here: clap passes over what the structures of their arguments say of themselves.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render scenes to image files
+    ///
+    /// Several scenes, and several cameras of one scene (a `Camera` directive for each, with "string name"), are rendered one after
+    /// the other in one process. One that fails does not stop the rest.
     Render(Box<RenderArgs>),
     /// Tell what is in a scene: counts, bounds, lights, materials, memory
     Info(InfoArgs),
     /// Measure how far image A is from the reference B
+    ///
+    /// Prints one JSON object: mse, relmse (the mean of (A-B)^2 / (B^2 + 0.01)), mean_a, mean_b, mean_difference ((mean_a - mean_b) /
+    /// mean_b) and flip (LDR-FLIP of the clamped sRGB images at 67 pixels a degree).
     Compare(CompareArgs),
     /// Write a scene as a pbrt-v4 file
+    ///
+    /// The file, read back, is the same scene, number for number. Meshes of some size and images that have no file of their own go into
+    /// a folder NAME-parts beside NAME.pbrt. What pbrt-v4 cannot say is written as an extension of Lucerna's, which is said.
     Convert(ConvertArgs),
     /// List what scene files may use, with every parameter: type, range, unit, default
+    ///
+    /// Of each parameter: type, name, unit, allowed values, default, and what it means. The scene reader goes by the same tables.
     List(ListArgs),
     /// Measure intersection backends on the rays of renders
+    ///
+    /// Records what a render of each scene asks of its backend: camera rays, bounces by depth, shadow rays, photons. Then traces the same
+    /// rays through Embree and through Lucerna's own BVH, by every call and way that they have, side by side.
     Bench(Box<BenchArgs>),
 }
 
-/// Tell what is in a scene.
+/// The arguments of `lucerna info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// A scene file
+    /// A scene file, or a mesh (.ply, .obj)
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
     /// What answers ray queries: `embree` or `bvh`
     #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
     pub backend: Backend,
+
+    /// Let Embree build what takes least memory, and is slower; Lucerna's BVH has one form
+    #[arg(long)]
+    pub compact: bool,
 
     /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]
@@ -80,16 +98,13 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
-/// Write a scene as a pbrt-v4 file.
-///
-/// The file, read back, is the same scene, number for number. Meshes of some size and images that have no file of their own go into a
-/// folder NAME-parts beside NAME.pbrt. What pbrt-v4 cannot say is written as an extension of Lucerna's, which is said.
+/// The arguments of `lucerna convert`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   lucerna convert kitchen.xml kitchen.pbrt")]
 pub struct ConvertArgs {
-    /// A scene file
+    /// A scene file, or a mesh (.ply, .obj) on its stage
     #[arg(value_name = "IN")]
     pub scene: PathBuf,
 
@@ -106,9 +121,7 @@ pub struct ConvertArgs {
     pub lenient: bool,
 }
 
-/// List what scene files may use, with every parameter.
-///
-/// Of each parameter: type, name, unit, allowed values, default, and what it means. The scene reader goes by the same tables.
+/// The arguments of `lucerna list`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -129,10 +142,7 @@ pub struct ListArgs {
     pub json: bool,
 }
 
-/// Measure how far image A is from the reference B.
-///
-/// Prints one JSON object: mse, relmse (the mean of (A-B)^2 / (B^2 + 0.01)), mean_a, mean_b, mean_difference ((mean_a - mean_b) /
-/// mean_b) and flip (LDR-FLIP of the clamped sRGB images at 67 pixels a degree).
+/// The arguments of `lucerna compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
     /// The image to judge (EXR or PNG)

@@ -1,4 +1,4 @@
-//! The arguments of `lucerna render`.
+//! `lucerna render` as typed.
 
 use std::path::PathBuf;
 
@@ -6,18 +6,15 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::values::{
-    ColorArg, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend, parse_crop,
-    parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_positive_whole, parse_resolution,
-    parse_seed, parse_whole,
+    ColorArg, MOST_THREADS, MaxDepth, PhotonMapArg, QualityArg, SamplerArg, StrategyArg, TermArg, parse_backend,
+    parse_crop, parse_define, parse_finite, parse_max_depth, parse_pixel, parse_positive, parse_positive_whole,
+    parse_resolution, parse_seed, parse_whole, parse_within,
 };
 use crate::accel::Backend;
 use crate::film::PixelRect;
 use crate::integrator::Integrator;
 
-/// Render scenes to image files.
-///
-/// Several scenes, and several cameras of one scene (a `Camera` directive for each, with "string name"), are rendered one after
-/// the other in one process. One that fails does not stop the rest.
+/// The arguments of `lucerna render`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Exit codes: 0 done, 1 a render or a file failed, 2 bad usage or a bad scene; the highest, if there are several.
@@ -84,7 +81,7 @@ pub struct RenderArgs {
 
     /// The greatest number of edges of paths whose strategies are told apart
     #[arg(long, value_name = "N", default_value_t = 5, requires = "strategies",
-        allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10))]
+        allow_negative_numbers = true, value_parser = |text: &str| parse_within(text, 1..=10))]
     pub strategies_depth: u32,
 
     /// Samples a pixel [default: the scene's]
@@ -131,7 +128,7 @@ pub struct RenderArgs {
     pub exposure: f32,
 
     /// Threads [default: as many as the machine runs at once]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = |text: &str| parse_within(text, 1..=MOST_THREADS as u32))]
     pub threads: Option<u32>,
 
     /// What answers ray queries: `embree` or `bvh`
@@ -145,6 +142,10 @@ pub struct RenderArgs {
     /// Let Embree use its fast triangle test, which is not watertight
     #[arg(long)]
     pub not_robust: bool,
+
+    /// Let Embree build what takes least memory, and is slower; Lucerna's BVH has one form
+    #[arg(long, conflicts_with = "not_robust")]
+    pub compact: bool,
 
     /// In a Mitsuba scene, what `$NAME` stands for instead of its default; may be given several times
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_define)]

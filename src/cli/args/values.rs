@@ -1,5 +1,7 @@
 //! The values of arguments: words that stand for kinds, and numbers in the forms that the command line has for them.
 
+use std::ops::RangeInclusive;
+
 use clap::ValueEnum;
 
 use crate::accel::{Backend, BuildQuality};
@@ -164,7 +166,7 @@ impl From<QualityArg> for BuildQuality {
 pub struct Threads(pub Vec<usize>);
 
 /// The greatest number of threads.
-const MOST_THREADS: usize = 4096;
+pub(super) const MOST_THREADS: usize = 4096;
 
 pub(super) fn parse_threads(text: &str) -> Result<Threads, String> {
     let expected = || format!("expected numbers of threads, 1 to {MOST_THREADS}, as in 4, 1..8 or 1,2,4");
@@ -226,6 +228,13 @@ pub(super) fn parse_positive_whole(text: &str) -> Result<u32, String> {
         .ok()
         .filter(|&n| n > 0)
         .ok_or_else(|| format!("expected a whole number from 1 to {}", u32::MAX))
+}
+
+pub(super) fn parse_within(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
+    text.parse()
+        .ok()
+        .filter(|n| range.contains(n))
+        .ok_or_else(|| format!("expected a whole number from {} to {}", range.start(), range.end()))
 }
 
 pub(super) fn parse_finite(text: &str) -> Result<f32, String> {

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::args::RenderArgs;
+use super::check_writable;
 use super::report::{Channel, Reporter};
 use super::stats::Statistics;
 use crate::error::{Error, Result};
@@ -59,7 +60,7 @@ impl<'a> Job<'a> {
             }
         }
         if let Some(stats) = &args.stats {
-            std::fs::File::create(stats).map_err(|e| Error::io("create", stats, e))?;
+            check_writable(stats)?;
         }
         let threads = args.threads.map_or_else(
             || std::thread::available_parallelism().map_or(1, usize::from),

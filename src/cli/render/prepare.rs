@@ -87,6 +87,7 @@ impl Job<'_> {
             build: BuildOptions {
                 quality: args.build_quality.into(),
                 robust: !args.not_robust,
+                compact: args.compact,
                 threads: self.pool.current_num_threads(),
             },
             color: args.color.into(),

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::Job;
 use super::prepare::Prepared;
 use crate::accel::{Accel, Backend, BuildOptions};
-use crate::bench::contenders::{BuildPlan, Built, Choice, quality_name};
+use crate::bench::contenders::{BuildPlan, Built, Choice, Family, quality_name};
 use crate::bench::streams::{Stream, StreamKind};
 use crate::bench::{rates, recorded};
 use crate::cli::stats::{Fastest, Profile, StageShare};
@@ -71,6 +71,7 @@ impl Job<'_> {
         BuildOptions {
             quality: self.args.build_quality.into(),
             robust: !self.args.not_robust,
+            compact: self.args.compact,
             threads: self.pool.current_num_threads(),
         }
     }
@@ -109,7 +110,10 @@ fn fastest(world: &Arc<World>, options: &BuildOptions, streams: &[Stream], rays:
         only: vec![quality_name(options.quality).to_owned()],
     };
     let threads = options.threads;
-    let plans = BuildPlan::all().into_iter().filter(|plan| plan.is_wanted(&choice));
+    // Compact scenes are there for their memory.
+    let plans = BuildPlan::all()
+        .into_iter()
+        .filter(|plan| plan.family != Family::EmbreeCompact && plan.is_wanted(&choice));
     let built = plans.map(|plan| plan.build(world, &choice, threads));
     let built = built.collect::<Result<Vec<Built>>>()?;
     let ways: Vec<_> = built

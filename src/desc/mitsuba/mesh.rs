@@ -11,6 +11,8 @@ use super::graph::{Graph, Object};
 use super::plugins::Class;
 use super::props::Props;
 use super::xml::XmlReader;
+use crate::desc::ply::PlyFile;
+use crate::desc::report::mesh_problem;
 use crate::desc::{MeshDesc, obj, ply, serialized};
 use crate::error::Error;
 
@@ -116,23 +118,16 @@ impl MeshFile {
     }
 
     fn read(&self) -> Result<ReadMesh, String> {
-        let (mut mesh, hash, flat) = match self.format {
-            Format::Obj => obj::load(&self.path)
-                .map(|file| (file.mesh, file.hash, false))
-                .map_err(|e| first_problem(&e)),
-            Format::Ply => {
-                let file = if self.with_attributes {
-                    ply::load_with_attributes(&self.path)
-                } else {
-                    ply::load(&self.path)
-                };
-                file.map(|file| (file.mesh, file.hash, false))
-            }
-            Format::Serialized => {
-                let file = serialized::load(&self.path, self.shape_index);
-                file.map(|file| (file.mesh, file.hash, file.face_normals))
-            }
-        }?;
+        let of_ply = |file: PlyFile| (file.mesh, file.hash, false);
+        let outcome = match self.format {
+            Format::Obj => obj::load(&self.path).map(|file| (file.mesh, file.hash, false)),
+            Format::Ply if self.with_attributes => ply::load_with_attributes(&self.path).map(of_ply),
+            Format::Ply => ply::load(&self.path).map(of_ply),
+            Format::Serialized => serialized::load(&self.path, self.shape_index)
+                .map(|file| (file.mesh, file.hash, file.face_normals))
+                .map_err(Error::Usage),
+        };
+        let (mut mesh, hash, flat) = outcome.map_err(|error| mesh_problem(&self.path, &error))?;
         if self.invert_v {
             mesh.uvs.iter_mut().for_each(|uv| *uv = Vec2::new(uv.x, 1.0 - uv.y));
         }
@@ -147,17 +142,6 @@ impl MeshFile {
             own_normals,
             hash,
         })
-    }
-}
-
-/// What is wrong with a mesh, first of all.
-fn first_problem(error: &Error) -> String {
-    match error {
-        Error::Scene(diagnostics) => diagnostics
-            .first()
-            .map_or_else(String::new, |d| format!("line {}: {}", d.line, d.message)),
-        Error::Io { source, .. } => source.to_string(),
-        other => other.to_string(),
     }
 }
 

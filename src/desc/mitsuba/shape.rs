@@ -136,8 +136,7 @@ impl<'g> Loader<'g> {
                         (kind, DAffine3::IDENTITY, flip ^ (mirrors && !read.own_normals))
                     }
                     Err(problem) => {
-                        let message = format!("cannot read the mesh {}: {problem}", file.path.display());
-                        props.error(props.span_of("filename"), message);
+                        props.error(props.span_of("filename"), problem);
                         return None;
                     }
                 }

@@ -47,7 +47,12 @@ pub(super) fn read(mut reader: ParamReader<'_>, kind: &str, around: Surroundings
     };
     let kind = match kind {
         "perspective" => Some(CameraKind::Perspective {
-            fov: reader.float_in("fov", 90.0, |v| v > 0.0 && v < 180.0, "between 0 and 180 degrees"),
+            fov: reader.float_in(
+                "fov",
+                90.0,
+                |v| v > 0.0 && v < 180.0,
+                "more than 0 and less than 180 degrees",
+            ),
             near_clip: reader.not_negative("nearclip", 0.0),
         }),
         "orthographic" => Some(CameraKind::Orthographic),

@@ -12,6 +12,7 @@ use super::report::Report;
 use super::shape::{PendingMeshes, RawKind};
 use super::suggest;
 use super::world::{RawShape, Slot, World, default_material};
+use crate::desc::report::mesh_problem;
 use crate::desc::{
     InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MeshDesc, ObjectDesc, ObjectId, SceneDesc, ShapeDesc,
     ShapeKind, ply,
@@ -144,8 +145,7 @@ fn read_meshes(pending: &PendingMeshes, with_attributes: bool, context: &mut Con
                 Arc::new(file.mesh)
             }
             Err(problem) => {
-                let message = format!("cannot read the mesh {}: {problem}", path.display());
-                context.report.error(*span, message);
+                context.report.error(*span, mesh_problem(path, &problem));
                 Arc::default()
             }
         });

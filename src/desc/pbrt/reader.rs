@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::files::Context;
 use super::params::{Param, ParamType, Values, value_span};
 use super::report::Report;
-use crate::desc::{Entry, Parameter, TextureId};
+use crate::desc::{Entry, Parameter, TextureId, suggest};
 use crate::error::Span;
 
 /// The parameters of one entity, being read.
@@ -310,7 +310,11 @@ pub(super) fn unknown_type(
     if later.contains(&name) {
         report.unsupported(span, format!("the {class} `{name}` is not supported yet"), instead);
     } else {
-        let help_from: Vec<&str> = known.iter().chain(later).copied().collect();
-        report.unknown(span, format!("unknown {class} `{name}`"), instead, name, &help_from);
+        let all: Vec<&str> = known.iter().chain(later).copied().collect();
+        let help = match suggest::closest(name, &all) {
+            Some(name) => format!("did you mean `{name}`?"),
+            None => format!("supported are {}", known.join(", ")),
+        };
+        report.unsupported_with_help(span, format!("unknown {class} `{name}`"), instead, Some(help));
     }
 }

@@ -1,6 +1,9 @@
 //! Numbers one after another, in text or in binary.
 
-use super::header::{Encoding, Header, Scalar};
+use std::ops::Range;
+
+use super::Problem;
+use super::header::{Element, Encoding, Header, Scalar};
 
 /// Reads the data of a PLY file in order.
 #[derive(Debug)]
@@ -8,8 +11,10 @@ pub(super) struct Cursor<'a> {
     text: &'a [u8],
     position: usize,
     encoding: Encoding,
-    /// Lines before the data, to name the lines of a text file.
-    header: &'a Header,
+    /// The word of a text file that was read last.
+    word: Range<usize>,
+    /// Where the header declares what is read.
+    declared: Range<usize>,
 }
 
 impl<'a> Cursor<'a> {
@@ -19,8 +24,14 @@ impl<'a> Cursor<'a> {
             text,
             position: header.end,
             encoding: header.encoding,
-            header,
+            word: header.end..header.end,
+            declared: 0..0,
         }
+    }
+
+    /// Says which element comes next.
+    pub fn begin(&mut self, element: &Element) {
+        self.declared = element.place.clone();
     }
 
     /// How many bytes are left.
@@ -28,19 +39,18 @@ impl<'a> Cursor<'a> {
         self.text.len() - self.position
     }
 
-    /// A message with the place: the line of a text file, the byte of a binary one.
-    pub fn problem(&self, message: &str) -> String {
+    /// A message with the place: the word of a text file. Binary data have no lines: there it is the declaration of the element, and
+    /// the message says at which byte.
+    fn problem(&self, message: &str) -> Problem {
         if self.encoding == Encoding::Ascii {
-            let data = &self.text[self.header.end..self.position];
-            let line = 1 + self.header.lines + data.iter().filter(|&&b| b == b'\n').count();
-            format!("line {line}: {message}")
+            (self.word.clone(), message.to_owned())
         } else {
-            format!("byte {}: {message}", self.position)
+            (self.declared.clone(), format!("{message} (at byte {})", self.position))
         }
     }
 
     /// The next so many bytes of a binary file.
-    pub fn bytes(&mut self, count: usize) -> Result<&'a [u8], String> {
+    pub fn bytes(&mut self, count: usize) -> Result<&'a [u8], Problem> {
         if count > self.left() {
             return Err(self.problem("the file ends before its data do"));
         }
@@ -55,7 +65,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next number.
-    pub fn number(&mut self, kind: Scalar) -> Result<f64, String> {
+    pub fn number(&mut self, kind: Scalar) -> Result<f64, Problem> {
         match self.encoding {
             Encoding::Ascii => {
                 let word = self.word()?;
@@ -69,7 +79,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next number of an integer type, as a length or an index.
-    pub fn index(&mut self, kind: Scalar) -> Result<usize, String> {
+    pub fn index(&mut self, kind: Scalar) -> Result<usize, Problem> {
         let value = self.number(kind)?;
         // Integers of 32 bits are exact in f64; the cast of anything else saturates, and so does not compare equal.
         let index = value as u32;
@@ -80,7 +90,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips so many numbers.
-    pub fn skip(&mut self, count: usize, kind: Scalar) -> Result<(), String> {
+    pub fn skip(&mut self, count: usize, kind: Scalar) -> Result<(), Problem> {
         if self.encoding == Encoding::Ascii {
             for _ in 0..count {
                 self.word()?;
@@ -91,13 +101,14 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    fn word(&mut self) -> Result<&'a [u8], String> {
+    fn word(&mut self) -> Result<&'a [u8], Problem> {
         let space = |b: &u8| b.is_ascii_whitespace();
         let rest = &self.text[self.position..];
         let start = rest.iter().position(|b| !space(b)).unwrap_or(rest.len());
         let word = &rest[start..];
         let word = &word[..word.iter().position(space).unwrap_or(word.len())];
         self.position += start + word.len();
+        self.word = self.position - word.len()..self.position;
         if word.is_empty() {
             return Err(self.problem("the file ends before its data do"));
         }

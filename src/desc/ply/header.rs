@@ -1,5 +1,9 @@
 //! The header of a PLY file: which elements there are, and what properties each has.
 
+use std::ops::Range;
+
+use super::Problem;
+
 /// A number's type in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
@@ -69,9 +73,16 @@ pub(super) struct Element {
     /// Its rows.
     pub count: u64,
     pub properties: Vec<Property>,
+    /// The bytes of the file that declare it.
+    pub place: Range<usize>,
 }
 
 impl Element {
+    /// A problem with it.
+    pub fn problem(&self, message: &str) -> Problem {
+        (self.place.clone(), message.to_owned())
+    }
+
     /// The fewest bytes that a row can have.
     pub fn least_row(&self, encoding: Encoding) -> u64 {
         let least = |p: &Property| match encoding {
@@ -98,29 +109,39 @@ pub(super) struct Header {
     pub elements: Vec<Element>,
     /// Where the data start.
     pub end: usize,
-    /// How many lines the header has.
-    pub lines: usize,
+}
+
+impl Header {
+    /// Where the element of a name is declared; the first line if it is not.
+    pub fn place_of(&self, name: &str) -> Range<usize> {
+        let named = self.elements.iter().find(|element| element.name == name);
+        named.map_or(0..3, |element| element.place.clone())
+    }
 }
 
 /// Reads a header.
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line.
-pub(super) fn parse(text: &[u8]) -> Result<Header, String> {
+/// What is wrong, and where.
+pub(super) fn parse(text: &[u8]) -> Result<Header, Problem> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut start = 0;
-    for number in 1.. {
-        let rest = &text[start..];
-        let at = |problem: &str| format!("line {number}: {problem}");
-        let length = rest.iter().position(|&b| b == b'\n');
-        let line = &rest[..length.unwrap_or(rest.len())];
-        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).collect();
+    loop {
+        let length = text[start..].iter().position(|&b| b == b'\n');
+        let end = length.map_or(text.len(), |length| start + length);
+        let places = words(text, start..end);
+        let words: Vec<&[u8]> = places.iter().map(|place| &text[place.clone()]).collect();
+        let at = |word: usize, problem: &str| (places[word].clone(), problem.to_owned());
+        let whole = places
+            .first()
+            .map_or(start..end, |first| first.start..places[places.len() - 1].end);
+        let wrong = |problem: &str| (whole.clone(), problem.to_owned());
         match words[..] {
-            _ if number == 1 => {
+            _ if start == 0 => {
                 if words != [b"ply"] {
-                    return Err("this is not a PLY file: its first line is not `ply`".to_owned());
+                    return Err(wrong("this is not a PLY file: its first line is not `ply`"));
                 }
             }
             [] | [b"comment" | b"obj_info", ..] => {}
@@ -129,36 +150,55 @@ pub(super) fn parse(text: &[u8]) -> Result<Header, String> {
                     b"ascii" => Encoding::Ascii,
                     b"binary_little_endian" => Encoding::LittleEndian,
                     b"binary_big_endian" => Encoding::BigEndian,
-                    _ => return Err(at("unknown format")),
+                    _ => {
+                        let expected = "expected `ascii`, `binary_little_endian` or `binary_big_endian`";
+                        return Err(at(1, &format!("unknown format: {expected}")));
+                    }
                 });
             }
             [b"element", name, count] => elements.push(Element {
                 name: String::from_utf8_lossy(name).into_owned(),
-                count: number_of(count).ok_or_else(|| at("expected the number of rows"))?,
+                count: number_of(count).ok_or_else(|| at(2, "expected the number of rows"))?,
                 properties: Vec::new(),
+                place: whole.clone(),
             }),
             [b"property", ..] => {
-                let element = elements.last_mut().ok_or_else(|| at("a property before any element"))?;
-                let property = property(&words[1..]).ok_or_else(|| at("expected a type and a name of a property"))?;
+                let element = elements
+                    .last_mut()
+                    .ok_or_else(|| at(0, "a property before any element"))?;
+                let property =
+                    property(&words[1..]).ok_or_else(|| wrong("expected a type and a name of a property"))?;
                 element.properties.push(property);
             }
             [b"end_header"] => {
                 return Ok(Header {
-                    encoding: encoding.ok_or("the header has no `format`")?,
+                    encoding: encoding.ok_or_else(|| at(0, "the header has no `format`"))?,
                     elements,
-                    end: start + length.map_or(line.len(), |l| l + 1),
-                    lines: number,
+                    end: length.map_or(end, |_| end + 1),
                 });
             }
             _ => {
-                return Err(at(
-                    "expected `format`, `element`, `property`, `comment` or `end_header`",
-                ));
+                let expected = "expected `format`, `element`, `property`, `comment` or `end_header`";
+                return Err(wrong(expected));
             }
         }
-        start += length.ok_or("the file ends before `end_header`")? + 1;
+        if length.is_none() {
+            return Err(wrong("the file ends before `end_header`"));
+        }
+        start = end + 1;
     }
-    Err("the header has no end".to_owned())
+}
+
+/// The places of the words of a line.
+fn words(text: &[u8], line: Range<usize>) -> Vec<Range<usize>> {
+    let mut places: Vec<Range<usize>> = Vec::new();
+    for at in line.filter(|&at| !text[at].is_ascii_whitespace()) {
+        match places.last_mut() {
+            Some(last) if last.end == at => last.end += 1,
+            _ => places.push(at..at + 1),
+        }
+    }
+    places
 }
 
 fn number_of(word: &[u8]) -> Option<u64> {

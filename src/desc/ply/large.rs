@@ -180,7 +180,7 @@ mod tests {
     fn parts_are_the_mesh_that_the_whole_is() {
         for encoding in ["little", "big"] {
             let content = content(encoding, 3, 1);
-            let whole = parse(&content).expect("a mesh");
+            let whole = parse(&content, Path::new("m.ply")).expect("a mesh");
             let parts = load_of(&content).expect("read in parts");
             assert_eq!(format!("{:?}", parts.mesh), format!("{whole:?}"));
             assert_eq!(parts.hash, blake3::hash(&content));

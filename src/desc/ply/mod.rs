@@ -14,12 +14,14 @@ mod header;
 mod large;
 mod rows;
 
+use std::ops::Range;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::{AttributeDomain, MeshAttributeDesc, MeshDesc, bytes};
+use crate::error::{Diagnostic, Error, Result, Severity};
 use attributes::AttributeColumns;
 use cursor::Cursor;
 use header::{Element, Encoding, Scalar};
@@ -36,12 +38,15 @@ pub struct PlyFile {
 /// The longest file that is read, decompressed.
 const LONGEST: u64 = 1 << 36;
 
+/// What is wrong, and with which bytes of the file.
+type Problem = (Range<usize>, String);
+
 /// Reads a file.
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line or at which byte.
-pub fn load(path: &Path) -> Result<PlyFile, String> {
+/// [`Error::Scene`] with the first problem, [`Error::Io`] if it cannot be read.
+pub fn load(path: &Path) -> Result<PlyFile> {
     read(path, false)
 }
 
@@ -52,8 +57,8 @@ pub fn load(path: &Path) -> Result<PlyFile, String> {
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line or at which byte.
-pub fn load_with_attributes(path: &Path) -> Result<PlyFile, String> {
+/// [`Error::Scene`] with the first problem, [`Error::Io`] if it cannot be read.
+pub fn load_with_attributes(path: &Path) -> Result<PlyFile> {
     read(path, true)
 }
 
@@ -61,46 +66,56 @@ pub fn load_with_attributes(path: &Path) -> Result<PlyFile, String> {
 #[cfg(unix)]
 const LARGE: u64 = 1 << 24;
 
-fn read(path: &Path, with_attributes: bool) -> Result<PlyFile, String> {
+fn read(path: &Path, with_attributes: bool) -> Result<PlyFile> {
     #[cfg(unix)]
     if !with_attributes && let Some(file) = large::load(path, LARGE) {
         return Ok(file);
     }
-    let content = bytes::read(path, LONGEST).map_err(|e| e.to_string())?;
+    let content = bytes::read(path, LONGEST).map_err(|e| Error::io("read", path, e))?;
     Ok(PlyFile {
-        mesh: parse_mesh(&content, with_attributes)?,
+        mesh: located(parse_mesh(&content, with_attributes), &content, path)?,
         hash: blake3::hash(&content),
     })
 }
 
-/// Reads a mesh from the content of a file, not compressed.
+/// Reads a mesh from the content of a file, not compressed; problems are reported under the name `path`.
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line or at which byte.
-pub fn parse(content: &[u8]) -> Result<MeshDesc, String> {
-    parse_mesh(content, false)
+/// [`Error::Scene`] with the first problem.
+pub fn parse(content: &[u8], path: &Path) -> Result<MeshDesc> {
+    located(parse_mesh(content, false), content, path)
 }
 
-/// [`load_with_attributes`] from the content of a file, not compressed.
+/// [`load_with_attributes`] from the content of a file, not compressed; problems are reported under the name `path`.
 ///
 /// # Errors
 ///
-/// What is wrong, and in which line or at which byte.
-pub fn parse_with_attributes(content: &[u8]) -> Result<MeshDesc, String> {
-    parse_mesh(content, true)
+/// [`Error::Scene`] with the first problem.
+pub fn parse_with_attributes(content: &[u8], path: &Path) -> Result<MeshDesc> {
+    located(parse_mesh(content, true), content, path)
 }
 
-fn parse_mesh(content: &[u8], with_attributes: bool) -> Result<MeshDesc, String> {
+fn located(mesh: Result<MeshDesc, Problem>, content: &[u8], path: &Path) -> Result<MeshDesc> {
+    mesh.map_err(|(place, message)| {
+        let diagnostic = Diagnostic::new(Severity::Error, path, content, place, message);
+        Error::Scene(vec![diagnostic])
+    })
+}
+
+fn parse_mesh(content: &[u8], with_attributes: bool) -> Result<MeshDesc, Problem> {
     let header = header::parse(content)?;
     let mut cursor = Cursor::new(content, &header);
     let mut mesh = MeshDesc::default();
     for element in &header.elements {
+        cursor.begin(element);
         let least = element.least_row(header.encoding);
         // The last number of a text needs no space after it.
         if element.count.saturating_mul(least) > cursor.left() as u64 + 1 {
-            let message = format!("the file is too short for {} rows of `{}`", element.count, element.name);
-            return Err(cursor.problem(&message));
+            return Err(element.problem(&format!(
+                "the file is too short for {} rows of `{}`",
+                element.count, element.name
+            )));
         }
         let attributes = if with_attributes {
             attributes::of(element)
@@ -117,15 +132,16 @@ fn parse_mesh(content: &[u8], with_attributes: bool) -> Result<MeshDesc, String>
             _ => skip(&mut cursor, element, header.encoding)?,
         }
     }
-    check(&mesh)?;
+    check(&mesh).map_err(|(element, message)| (header.place_of(element), message))?;
     Ok(mesh)
 }
 
-/// What must hold of a mesh that has been read.
-fn check(mesh: &MeshDesc) -> Result<(), String> {
+/// What must hold of a mesh that has been read; else what is wrong, and with which element.
+fn check(mesh: &MeshDesc) -> Result<(), (&'static str, String)> {
     let count = mesh.positions.len();
     if count == 0 || mesh.indices.is_empty() {
-        return Err("there are no vertices or no faces".to_owned());
+        let element = if count == 0 { "vertex" } else { "face" };
+        return Err((element, "there are no vertices or no faces".to_owned()));
     }
     let is_beyond = |&&i: &&u32| i as usize >= count;
     let faces = mesh.indices.par_iter().with_min_len(1 << 14);
@@ -133,18 +149,19 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
         .filter_map(|face| face.iter().find(is_beyond))
         .find_first(|_| true)
     {
-        return Err(format!(
-            "a face has the vertex {bad}, but there are {count}, counted from 0"
-        ));
+        let message = format!("a face has the vertex {bad}, but there are {count}, counted from 0");
+        return Err(("face", message));
     }
     let finite = |values: &[Vec3]| values.iter().position(|v| !v.is_finite());
     let uv = mesh.uvs.iter().position(|v| !v.is_finite());
     let is_finite = |attribute: &&MeshAttributeDesc| attribute.values.iter().all(|v| v.is_finite());
     if let Some(bad) = mesh.attributes.iter().find(|attribute| !is_finite(attribute)) {
-        return Err(format!(
-            "a value of `{}` is not finite in 32-bit floating point",
-            bad.name
-        ));
+        let element = match bad.domain {
+            AttributeDomain::Vertices => "vertex",
+            AttributeDomain::Triangles => "face",
+        };
+        let message = format!("a value of `{}` is not finite in 32-bit floating point", bad.name);
+        return Err((element, message));
     }
     for (bad, what) in [
         (finite(&mesh.positions), "position"),
@@ -152,9 +169,8 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
         (uv, "texture coordinate"),
     ] {
         if let Some(index) = bad {
-            return Err(format!(
-                "the {what} of vertex {index} is not finite in 32-bit floating point"
-            ));
+            let message = format!("the {what} of vertex {index} is not finite in 32-bit floating point");
+            return Err(("vertex", message));
         }
     }
     Ok(())
@@ -169,7 +185,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(element: &Element, attributes: Vec<AttributeColumns>) -> Result<Self, String> {
+    fn of(element: &Element, attributes: Vec<AttributeColumns>) -> Result<Self, Problem> {
         let find = |name: &str| {
             let mut properties = element.properties.iter();
             properties.position(|p| p.name == name && p.length.is_none())
@@ -182,7 +198,8 @@ impl Columns {
             ("texture_s", "texture_t"),
         ];
         Ok(Self {
-            position: find3("x", "y", "z").ok_or("the vertices have no properties `x`, `y` and `z`")?,
+            position: find3("x", "y", "z")
+                .ok_or_else(|| element.problem("the vertices have no properties `x`, `y` and `z`"))?,
             normal: find3("nx", "ny", "nz"),
             uv: uv_names.iter().find_map(|(u, v)| Some([find(u)?, find(v)?])),
             attributes,
@@ -196,7 +213,7 @@ fn read_vertices(
     encoding: Encoding,
     attributes: Vec<AttributeColumns>,
     mesh: &mut MeshDesc,
-) -> Result<(), String> {
+) -> Result<(), Problem> {
     let first = mesh.attributes.len();
     let named = attributes
         .iter()
@@ -204,7 +221,7 @@ fn read_vertices(
     mesh.attributes.extend(named);
     let columns = Columns::of(element, attributes)?;
     if u32::try_from(element.count).is_err() {
-        return Err("there are more vertices than 32 bits can count".to_owned());
+        return Err(element.problem("there are more vertices than 32 bits can count"));
     }
     let count = element.count as usize;
     match element.fixed_row().filter(|_| encoding != Encoding::Ascii) {
@@ -248,12 +265,12 @@ fn read_faces(
     encoding: Encoding,
     attributes: &[AttributeColumns],
     mesh: &mut MeshDesc,
-) -> Result<(), String> {
+) -> Result<(), Problem> {
     let is_corners = |name: &str| name == "vertex_indices" || name == "vertex_index";
     let mut properties = element.properties.iter();
     let corners = properties
         .position(|p| is_corners(&p.name) && p.length.is_some() && p.value.is_integer())
-        .ok_or("the faces have no list of integers `vertex_indices`")?;
+        .ok_or_else(|| element.problem("the faces have no list of integers `vertex_indices`"))?;
     if let Some(row) = rows::triangle_row(element).filter(|_| encoding != Encoding::Ascii)
         && let Some(content) = cursor.peek((element.count as usize).saturating_mul(row))
         && let Some(triangles) = rows::triangles(content, row, encoding)
@@ -289,7 +306,7 @@ fn read_faces(
     Ok(())
 }
 
-fn read_fan(cursor: &mut Cursor, count: usize, kind: Scalar, triangles: &mut Vec<[u32; 3]>) -> Result<(), String> {
+fn read_fan(cursor: &mut Cursor, count: usize, kind: Scalar, triangles: &mut Vec<[u32; 3]>) -> Result<(), Problem> {
     let (mut first, mut previous) = (0, 0);
     for i in 0..count {
         let corner = cursor.index(kind)? as u32;
@@ -303,13 +320,13 @@ fn read_fan(cursor: &mut Cursor, count: usize, kind: Scalar, triangles: &mut Vec
     Ok(())
 }
 
-fn skip_list(cursor: &mut Cursor, length: Scalar, value: Scalar) -> Result<(), String> {
+fn skip_list(cursor: &mut Cursor, length: Scalar, value: Scalar) -> Result<(), Problem> {
     let count = cursor.index(length)?;
     cursor.skip(count, value)
 }
 
 /// Skips an element that does not matter.
-fn skip(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Result<(), String> {
+fn skip(cursor: &mut Cursor, element: &Element, encoding: Encoding) -> Result<(), Problem> {
     if element.properties.is_empty() {
         return Ok(());
     }

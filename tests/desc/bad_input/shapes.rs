@@ -4,7 +4,7 @@ use super::{Case, check};
 
 #[test]
 fn kinds_and_values() {
-    let cases: [Case; 10] = [
+    let cases: [Case; 11] = [
         (
             "WorldBegin Shape \"sphere\" \"float radius\" @\"big\"",
             "expected a finite number, found `\"big\"`",
@@ -51,6 +51,11 @@ fn kinds_and_values() {
             "`radius`",
         ),
         ("WorldBegin Shape @\"spere\"", "unknown shape `spere`", "`sphere`"),
+        (
+            "WorldBegin Shape @\"teapot\"",
+            "unknown shape `teapot`",
+            "supported are trianglemesh, ",
+        ),
     ];
     cases.iter().for_each(check);
 }

@@ -127,7 +127,7 @@ fn image_textures() {
         (
             "WorldBegin Texture \"a\" \"spectrum\" @\"fbm\"",
             "unknown spectrum texture `fbm`",
-            "",
+            "supported are constant, ",
         ),
         (
             "WorldBegin Shape \"sphere\" \"float alpha\" @1.5",

@@ -7,7 +7,7 @@ fn cameras() {
     let cases: [Case; 11] = [
         (
             "Camera \"perspective\" \"float fov\" @[ 180 ] WorldBegin",
-            "between 0 and 180",
+            "it must be more than 0 and less than 180 degrees",
             "",
         ),
         (

@@ -75,7 +75,7 @@ fn meshes_get_smooth_normals_unless_they_are_not_wanted() {
     // Mitsuba turns v of OBJ files round, and this program turns it back.
     assert_eq!((mesh(0).uvs[3].y, mesh(2).uvs[3].y), (1.0, 0.0));
     let message = error_of(&[("scene.xml", &main), ("m.obj", "v 0 0 0\nf 1 2 3\n")]);
-    assert!(message.contains("m.obj: line 2: there is no vertex 2"), "{message}");
+    assert!(message.contains("m.obj:2:5: there is no vertex 2"), "{message}");
 }
 
 /// Two meshes in one file of version 4, one of single and one of double precision.
