@@ -71,6 +71,16 @@ pub trait Interleaved: Kernel + Lanes<LANES> {
     /// Which triangles of a block a ray meets, as [`Kernel::triangles`].
     fn triangles_of(self, block: &FixedBlock, ray: Member) -> TriangleHits;
 
+    /// [`Trip::trace`] compiled for these instructions, as a function of its own: within a larger one it would get fewer registers.
+    fn trip<const ANY: bool>(
+        self,
+        trip: &Trip<'_, '_, Self>,
+        packets: &[RayPacket],
+        room: &mut Room,
+        single_stack: &mut [u64; STACK],
+        done: &mut dyn FnMut(&Mates),
+    );
+
     /// Fetches what is at an address into the cache, if anything is.
     fn fetch(self, place: usize);
 }
@@ -195,7 +205,7 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
         packets: &[RayPacket],
         room: &mut Room,
         single_stack: &mut [u64; STACK],
-        mut done: impl FnMut(&Mates),
+        done: &mut dyn FnMut(&Mates),
     ) {
         let Some((mates, stacks, slots)) = room.parts() else {
             return;
@@ -209,7 +219,7 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
         };
         let mut next: Round = [0; 4];
         for i in 0..SLOTS {
-            if !self.begin::<ANY>(i, &mut feed, mates, slots, single_stack, &mut done) {
+            if !self.begin::<ANY>(i, &mut feed, mates, slots, single_stack, done) {
                 break;
             }
             next[0] |= 1 << i;
@@ -237,8 +247,8 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
             while let Some(i) = first(&mut others) {
                 let (at, lane) = slots.place(i);
                 if slots.current[i].0 == END {
-                    feed.end(&mut mates[at], at, lane, &mut done);
-                    let more = self.begin::<ANY>(i, &mut feed, mates, slots, single_stack, &mut done);
+                    feed.end(&mut mates[at], at, lane, done);
+                    let more = self.begin::<ANY>(i, &mut feed, mates, slots, single_stack, done);
                     next[0] |= u32::from(more) << i;
                     continue;
                 }
@@ -258,7 +268,7 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
         mates: &mut [Mates; SLOTS],
         slots: &mut Slots,
         single_stack: &mut [u64; STACK],
-        done: &mut impl FnMut(&Mates),
+        done: &mut dyn FnMut(&Mates),
     ) -> bool {
         while feed.waiting == 0 {
             let Some(packet) = feed.packets.get(feed.next) else {
@@ -372,7 +382,7 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
 impl Feed<'_> {
     /// A ray has come to its end.
     #[inline(always)]
-    fn end(&mut self, mates: &mut Mates, at: usize, lane: usize, done: &mut impl FnMut(&Mates)) {
+    fn end(&mut self, mates: &mut Mates, at: usize, lane: usize, done: &mut dyn FnMut(&Mates)) {
         mates.left &= !(1 << lane);
         if mates.left == 0 {
             done(mates);

@@ -42,7 +42,7 @@ use self::query::{Asked, Query};
 use self::ray::{LocalRay, direction_scale};
 use self::tracing::Tracing;
 use self::traverse::{Level, STACK};
-use self::tree::GroupTrees;
+use self::tree::{FixedTree, GroupTrees};
 use super::{Accel, AccelInfo, Backend, BuildOptions, HitFilter, RayKind};
 use crate::geometry::{GroupId, HitPacket, LANES, Opacity, RayPacket, World};
 
@@ -51,6 +51,8 @@ struct Scene {
     world: Arc<World>,
     /// The top level: geometries in world space, and instances.
     top: GroupTrees,
+    /// See [`FixedTree::expected_nodes`]; of the top level.
+    expected_nodes: f64,
     /// By [`GroupId`].
     groups: Vec<GroupTrees>,
     /// Of each geometry, whether hits on it are filtered.
@@ -88,9 +90,11 @@ impl Bvh {
             .par_iter()
             .map(|instance| instance.world_from_object.moving_bounds(&boxes[instance.group.index()]))
             .collect();
+        let top = GroupTrees::build(world, world.root(), &instances, quality);
         Self {
             scene: Arc::new(Scene {
-                top: GroupTrees::build(world, world.root(), &instances, quality),
+                expected_nodes: top.fixed.as_ref().map_or(0.0, FixedTree::expected_nodes),
+                top,
                 groups,
                 filtered: world
                     .geometries()

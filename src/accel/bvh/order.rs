@@ -140,12 +140,10 @@ pub fn sort<S: Lanes<LANES>>(
 /// Packets of a call that are looked at to tell whether its rays are alike.
 const LOOKS: usize = 8;
 
-/// Rays of a class, on average, from which on rays are alike.
-const ALIKE: usize = 4;
-
-/// Whether rays are of few classes, as those that mirrors send on are, by some of the packets.
+/// How many rays there are of a class, on average, by some of the packets: many of those that mirrors send on, or of a tile to a small
+/// light.
 #[inline(always)]
-pub fn are_alike<S: Lanes<LANES>>(s: S, packets: &[RayPacket], bounds: &Bounds3) -> bool {
+pub fn rays_of_class<S: Lanes<LANES>>(s: S, packets: &[RayPacket], bounds: &Bounds3) -> usize {
     let cells = Cells::new(bounds);
     let mut met = [0u64; (CLASSES * CELLS).div_ceil(64) + 1];
     let mut rays = 0;
@@ -159,7 +157,7 @@ pub fn are_alike<S: Lanes<LANES>>(s: S, packets: &[RayPacket], bounds: &Bounds3)
         }
     }
     let classes: u32 = met[..CLASSES * CELLS / 64].iter().map(|word| word.count_ones()).sum();
-    classes as usize * ALIKE <= rays
+    rays / classes.max(1) as usize
 }
 
 /// Where rays of these classes go.

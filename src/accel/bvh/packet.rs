@@ -8,16 +8,16 @@
 #![allow(unsafe_code)]
 
 mod stack;
+mod triangles;
 
 use std::mem::MaybeUninit;
 
 use self::stack::Stack;
 use super::kernel::Kernel;
 use super::lanes::{Lanes, lanes_of};
-use super::leaf::{Block, Corners, FixedBlock, LANES as TRIANGLES};
 use super::node::{Child, ChildRef, Node, Planes, WIDTH};
 use super::prepare::{Prepared, Rays, Row};
-use super::query::{Asked, CULL_SLACK, Candidate, Query};
+use super::query::{Asked, CULL_SLACK, Query};
 use super::traverse::Walk;
 use super::tree::FixedTree;
 use crate::geometry::HitPacket;
@@ -220,130 +220,6 @@ impl<'a, const N: usize> Packet<'a, N> {
         Some(met[*last as usize % WIDTH])
     }
 
-    /// Tests the rays of `lanes` against the triangles of a block.
-    #[inline(always)]
-    fn block<S: Lanes<N>, const ANY: bool>(&mut self, s: S, block: &FixedBlock, lanes: u32, instance: u32) {
-        let ids = block.ids();
-        let corners = block.fixed_corners();
-        let mut planes = None;
-        for triangle in 0..TRIANGLES {
-            if ids.mask[triangle] == 0 {
-                continue;
-            }
-            let [x, y, z] = self.axes;
-            let offsets = Offsets::of(&self.prepared.rays, corners, triangle);
-            let depth = offsets.along(s, z);
-            let [ax, bx, cx] = sheared(s, offsets.along(s, x), &self.prepared.scale[0], depth);
-            let [ay, by, cy] = sheared(s, offsets.along(s, y), &self.prepared.scale[1], depth);
-            let u = s.sub(s.mul(cx, by), s.mul(cy, bx));
-            let v = s.sub(s.mul(ax, cy), s.mul(ay, cx));
-            let w = s.sub(s.mul(bx, ay), s.mul(by, ax));
-            // A NaN is lost or makes neither true: the lane is not passed over here unless the other two differ in sign.
-            let (lowest, highest) = (least(s, [u, v, w]), greatest(s, [u, v, w]));
-            let zero = s.splat(0.0);
-            let missed = s.and(s.lt(lowest, zero), s.lt(zero, highest));
-            let possible = lanes & !s.bits(missed);
-            if possible == 0 {
-                continue;
-            }
-            let along_x = times(s, offsets.along(s, x), &self.prepared.inverse[x]);
-            let along_y = times(s, offsets.along(s, y), &self.prepared.inverse[y]);
-            let along_z = times(s, depth, &self.prepared.scale[2]);
-            let first = greatest(s, [least(s, along_x), least(s, along_y), least(s, along_z)]);
-            let last = least(s, [greatest(s, along_x), greatest(s, along_y), greatest(s, along_z)]);
-            // Other rays miss the box, by rounding only.
-            let boxed = s.le(first, last);
-            let tnear = s.load(&self.prepared.rays.tnear);
-            let within = s.and(s.lt(tnear, last), s.le(first, s.load(&self.prepared.rays.tfar)));
-            let within = s.bits(within) | !s.bits(boxed);
-            let seen = s.meet(s.load_u(&self.prepared.rays.mask), s.splat_u(ids.mask[triangle]));
-            let possible = possible & within & s.bits(seen);
-            if possible == 0 {
-                continue;
-            }
-            // Zero, or NaN where the products overflow.
-            let sure = s.and(s.and(s.lt(zero, s.abs(u)), s.lt(zero, s.abs(v))), s.lt(zero, s.abs(w)));
-            let planes = planes.get_or_insert_with(|| s.planes(corners));
-            let rays = &self.prepared.rays;
-            let distances = s.plane_distance(
-                planes,
-                triangle,
-                self.axes,
-                [&rays.origin[x], &rays.origin[y], &rays.origin[z]],
-                [&rays.direction[x], &rays.direction[y], &rays.direction[z]],
-            );
-            let t = s.least(s.greatest(distances, first), last);
-            let finite = s.lt(s.abs(distances), s.splat(f32::INFINITY));
-            let exact = possible & s.bits(s.and(s.and(sure, finite), boxed));
-            let inside = exact & s.bits(s.and(s.lt(tnear, t), s.le(t, s.load(&self.prepared.rays.tfar))));
-            let inexact = possible & !exact;
-            let candidate = Candidate {
-                t: 0.0,
-                geometry: ids.geometry[triangle],
-                primitive: ids.primitive[triangle],
-                instance,
-            };
-            if inexact == 0 && !self.asked.is_filtered(candidate.geometry) {
-                self.take_all(s, t, inside, &candidate);
-            } else {
-                let mut distances = [0.0; N];
-                s.store(t, &mut distances);
-                self.offer(&corners.lane(triangle), &distances, inside, inexact, candidate);
-            }
-        }
-    }
-
-    /// Takes the hits of the lanes of `inside`, which are in the range of their rays, where they precede the nearest so far.
-    #[inline(always)]
-    fn take_all<S: Lanes<N>>(&mut self, s: S, t: S::F, inside: u32, candidate: &Candidate) {
-        let tfar = s.load(&self.prepared.rays.tfar);
-        let closer = inside & s.bits(s.lt(t, tfar));
-        let mask = s.mask(closer);
-        s.store(s.blend(mask, tfar, t), &mut self.prepared.rays.tfar);
-        let ids = [candidate.geometry, candidate.primitive, candidate.instance];
-        for (row, id) in self.ids.iter_mut().zip(ids) {
-            s.store_u(s.blend_u(mask, s.load_u(row), s.splat_u(id)), row);
-        }
-        let mut ties = inside & !closer;
-        while ties != 0 {
-            let lane = ties.trailing_zeros() as usize;
-            ties &= ties - 1;
-            if ids < self.ids.map(|row| row[lane]) {
-                (0..3).for_each(|i| self.ids[i][lane] = ids[i]);
-            }
-        }
-    }
-
-    /// Offers hits one by one: those that single precision cannot decide, and those that a filter is asked about.
-    #[cold]
-    #[inline(never)]
-    fn offer(
-        &mut self,
-        corners: &[[f32; 3]; 3],
-        distances: &Row<N>,
-        inside: u32,
-        inexact: u32,
-        mut candidate: Candidate,
-    ) {
-        let mut rest = inside | inexact;
-        while rest != 0 {
-            let lane = rest.trailing_zeros() as usize;
-            rest &= rest - 1;
-            let shear = self.prepared.shear(lane);
-            candidate.t = distances[lane];
-            let mut query = self.query(lane);
-            if inexact >> lane & 1 != 0 {
-                match shear.distance(corners) {
-                    Some(t) if query.contains(t) => candidate.t = t,
-                    _ => continue,
-                }
-            }
-            if query.offer(&candidate, || shear.barycentrics(corners)) {
-                self.take(lane, &query);
-            }
-        }
-    }
-
     #[inline(always)]
     fn query(&self, lane: usize) -> Query<'a> {
         Query {
@@ -375,64 +251,6 @@ impl<'a, const N: usize> Packet<'a, N> {
             self.take(lane, &query);
         }
     }
-}
-
-/// A triangle's corners, seen from the origins of rays.
-struct Offsets<'a, const N: usize> {
-    rays: &'a Rays<N>,
-    corners: &'a Corners,
-    triangle: usize,
-}
-
-// Functions, not closures nor `array::map`: those may be left out of line, where they are compiled without the instructions of `S`.
-impl<'a, const N: usize> Offsets<'a, N> {
-    #[inline(always)]
-    fn of(rays: &'a Rays<N>, corners: &'a Corners, triangle: usize) -> Self {
-        Self {
-            rays,
-            corners,
-            triangle,
-        }
-    }
-
-    /// The offsets of the three corners along an axis.
-    #[inline(always)]
-    fn along<S: Lanes<N>>(&self, s: S, axis: usize) -> [S::F; 3] {
-        [
-            self.of_corner(s, 0, axis),
-            self.of_corner(s, 1, axis),
-            self.of_corner(s, 2, axis),
-        ]
-    }
-
-    #[inline(always)]
-    fn of_corner<S: Lanes<N>>(&self, s: S, corner: usize, axis: usize) -> S::F {
-        let corner = s.splat(self.corners.0[corner][axis][self.triangle]);
-        s.sub(corner, s.load(&self.rays.origin[axis]))
-    }
-}
-
-/// Offsets across the rays, of the corners that are at `depth`.
-#[inline(always)]
-fn sheared<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3], scale: &Row<N>, depth: [S::F; 3]) -> [S::F; 3] {
-    let [da, db, dc] = times(s, depth, scale);
-    [s.sub(a, da), s.sub(b, db), s.sub(c, dc)]
-}
-
-#[inline(always)]
-fn times<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3], factor: &Row<N>) -> [S::F; 3] {
-    let factor = s.load(factor);
-    [s.mul(factor, a), s.mul(factor, b), s.mul(factor, c)]
-}
-
-#[inline(always)]
-fn least<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3]) -> S::F {
-    s.least(s.least(a, b), c)
-}
-
-#[inline(always)]
-fn greatest<S: Lanes<N>, const N: usize>(s: S, [a, b, c]: [S::F; 3]) -> S::F {
-    s.greatest(s.greatest(a, b), c)
 }
 
 #[inline(always)]

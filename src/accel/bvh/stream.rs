@@ -3,7 +3,7 @@
 use super::Scene;
 use super::interleave::{self, Interleaved, Mates, Trip};
 use super::lanes::{Lanes, lanes_of};
-use super::order::{BATCH, Place, Room, are_alike, sort};
+use super::order::{BATCH, Place, Room, rays_of_class, sort};
 use super::packet::Packet;
 use super::prepare::Rays;
 use super::query::{Asked, Query};
@@ -24,12 +24,33 @@ impl Scene {
 pub struct Plan {
     /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
     pub as_they_come: bool,
-    /// Nodes of the tree above which rays go through it one by one.
-    pub most_nodes: usize,
-    /// Whether they go together all the same, if they are alike. Not for occlusion.
-    pub looks: bool,
-    /// Packets of a call of which the rays do so whatever the tree: few have little in common. Not for occlusion.
+    /// When the others go together: if one of these holds.
+    pub together: &'static [Together],
+    /// Packets of a call of which the rays go one by one whatever the tree: few have little in common. Not for occlusion.
     pub few_packets: usize,
+}
+
+/// Rays that go together.
+#[derive(Clone, Copy, Debug)]
+pub struct Together {
+    /// How alike they are at least: rays of a class, on average.
+    pub alike: usize,
+    /// Nodes of the tree at most: what rays do not share is to be fetched from memory, which packets wait for.
+    pub nodes: usize,
+    /// Nodes that a ray is expected to visit at most ([`FixedTree::expected_nodes`]): on a long way rays part.
+    pub expected: f64,
+}
+
+impl Plan {
+    /// Whether rays go through the tree together.
+    #[inline(always)]
+    fn is_together<S: Lanes<LANES>>(&self, s: S, scene: &Scene, tree: &FixedTree, packets: &[RayPacket]) -> bool {
+        let of_tree = |rule: &&Together| tree.nodes.len() <= rule.nodes && scene.expected_nodes <= rule.expected;
+        let Some(least) = self.together.iter().filter(of_tree).map(|rule| rule.alike).min() else {
+            return false;
+        };
+        least == 0 || least <= rays_of_class(s, packets, &tree.bounds)
+    }
 }
 
 fn active(packet: &RayPacket) -> u32 {
@@ -130,14 +151,20 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
         &self,
         packets: &[RayPacket],
         (stack, room): (&mut [u64; STACK], &mut interleave::Room),
-        done: impl FnMut(&Mates),
+        mut done: impl FnMut(&Mates),
     ) {
         let walk = Walk {
             kernel: self.kernel,
             scene: self.scene,
             level: &self.level,
         };
-        Trip::new(walk, self.tree, self.asked).trace::<ANY>(packets, room, stack, done);
+        let trip = Trip::new(walk, self.tree, self.asked);
+        if ANY {
+            self.kernel.trip::<ANY>(&trip, packets, room, stack, &mut done);
+        } else {
+            // 3 % slower as a function of its own.
+            trip.trace::<ANY>(packets, room, stack, &mut done);
+        }
     }
 
     /// Traces one ray.
@@ -164,9 +191,7 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     let mut room = Room::take();
     if plan.as_they_come {
         as_they_come(&call, packets, hits, &mut room.stack);
-    } else if tree.nodes.len() > plan.most_nodes && !(plan.looks && are_alike(kernel, packets, &tree.bounds))
-        || packets.len() <= plan.few_packets
-    {
+    } else if packets.len() <= plan.few_packets || !plan.is_together(kernel, scene, tree, packets) {
         let Room { stack, interleave, .. } = &mut *room;
         call.one_by_one::<false>(packets, (stack, interleave), |mates| {
             let [geometry, primitive, instance] = mates.ids;
@@ -272,7 +297,7 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
         places,
     } = &mut *room;
     for packets in packets.chunks_mut(BATCH / LANES) {
-        if tree.nodes.len() > plan.most_nodes {
+        if !plan.is_together(kernel, scene, tree, packets) {
             let mut found = [0u8; BATCH / LANES];
             call.one_by_one::<true>(packets, (&mut *stack, &mut *interleave), |mates| {
                 found[mates.packet] = mates.found as u8;

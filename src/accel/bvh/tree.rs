@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::build::{self, BinaryNode, BuildParams, Leaf};
 use super::collapse::collapse;
-use super::item::Item;
+use super::item::{Item, half_area};
 use super::leaf::{Block, FixedBlock, LANES, MovingBlock};
-use super::node::{Child, ChildRef, FixedNode, MovingNode, Node};
+use super::node::{Child, ChildRef, FixedNode, MovingNode, Node, WIDTH};
 use super::ploc;
 use super::ray::MARGIN;
 use super::spatial::Corners;
@@ -46,6 +46,28 @@ pub struct GroupTrees {
     pub fixed: Option<FixedTree>,
     /// What does.
     pub moving: Vec<MovingTrees>,
+}
+
+impl FixedTree {
+    /// How many nodes a ray that meets the root's box meets on average, if nothing stops it and it comes from anywhere: the surface area
+    /// heuristic.
+    pub fn expected_nodes(&self) -> f64 {
+        let of_node = |node: &FixedNode| -> f64 {
+            let planes = &node.fixed_planes().0;
+            let inner =
+                (0..WIDTH).filter(|&slot| matches!(node.children()[slot].get(), Child::Node(index) if index > 0));
+            inner
+                .map(|slot| {
+                    let corner = |side: usize| Vec3::from_array([0, 2, 4].map(|row| planes[row + side][slot]));
+                    half_area(&Bounds3 {
+                        min: corner(0),
+                        max: corner(1),
+                    })
+                })
+                .sum()
+        };
+        1.0 + self.nodes.iter().map(of_node).sum::<f64>() / half_area(&self.bounds)
+    }
 }
 
 impl<N, B> Tree<N, B> {

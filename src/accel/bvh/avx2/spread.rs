@@ -5,11 +5,12 @@ use std::hint::select_unpredictable;
 
 use super::Avx2;
 use super::triangles::triangles;
-use crate::accel::bvh::interleave::{Interleaved, Member, Stack, Top};
+use crate::accel::bvh::interleave::{Interleaved, Mates, Member, Room, Stack, Top, Trip};
 use crate::accel::bvh::kernel::TriangleHits;
 use crate::accel::bvh::leaf::{Block, FixedBlock};
 use crate::accel::bvh::node::{FixedNode, Node, WIDTH};
-use crate::geometry::LANES;
+use crate::accel::bvh::traverse::STACK;
+use crate::geometry::{LANES, RayPacket};
 
 /// For each set of lanes, these lanes first.
 static PACKED: [[u8; WIDTH]; 256] = packed();
@@ -46,12 +47,37 @@ impl Interleaved for Avx2 {
     }
 
     #[inline(always)]
+    fn trip<const ANY: bool>(
+        self,
+        trip: &Trip<'_, '_, Self>,
+        packets: &[RayPacket],
+        room: &mut Room,
+        single_stack: &mut [u64; STACK],
+        done: &mut dyn FnMut(&Mates),
+    ) {
+        // SAFETY: `self` proves that the processor has AVX2 and FMA.
+        unsafe { trace::<ANY>(trip, packets, room, single_stack, done) }
+    }
+
+    #[inline(always)]
     fn fetch(self, place: usize) {
         for line in 0..4 {
             // SAFETY: a hint, which reads nothing: any address is allowed.
             unsafe { _mm_prefetch::<_MM_HINT_T0>((place + 64 * line) as *const i8) };
         }
     }
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline(never)]
+fn trace<const ANY: bool>(
+    trip: &Trip<'_, '_, Avx2>,
+    packets: &[RayPacket],
+    room: &mut Room,
+    single_stack: &mut [u64; STACK],
+    done: &mut dyn FnMut(&Mates),
+) {
+    trip.trace::<ANY>(packets, room, single_stack, done);
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
