@@ -93,30 +93,42 @@ const NOTHING: Histogram = [[Bin {
     exit: 0,
 }; BINS]; 3];
 
-/// Cuts a box into equal slabs.
+/// Cuts a box into equal slabs, along each axis.
 #[derive(Clone, Copy)]
 struct Slabs {
-    low: Vec3,
-    step: Vec3,
+    low: Vec4,
+    step: Vec4,
+    /// Slabs a unit of length; 0 along an axis that is not cut.
+    scale: Vec4,
 }
 
 impl Slabs {
+    fn new(bounds: &Box4) -> Self {
+        let step = (bounds.high - bounds.low) / BINS as f32;
+        let scale = step.recip();
+        let is_cut = step.cmpgt(Vec4::ZERO) & scale.cmpgt(Vec4::ZERO) & scale.cmplt(Vec4::INFINITY);
+        Self {
+            low: bounds.low,
+            step,
+            scale: Vec4::select(is_cut, scale, Vec4::ZERO),
+        }
+    }
+
+    /// Where the slab begins.
     fn place(&self, axis: usize, bin: usize) -> f32 {
         self.low[axis] + self.step[axis] * bin as f32
     }
 
-    fn bin(&self, axis: usize, x: f32) -> usize {
-        (((x - self.low[axis]) / self.step[axis]) as usize).min(BINS - 1)
+    /// The slabs that a point is in, by axis.
+    fn bins(&self, point: Vec4) -> [usize; 3] {
+        let [x, y, z, _] = ((point - self.low) * self.scale).to_array();
+        [x, y, z].map(|x| (x as usize).min(BINS - 1))
     }
 }
 
 /// The plane of least cost between slabs of the items' box, if there is one that divides them.
 pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Option<Plane> {
-    let bounds = extent.bounds.bounds();
-    let slabs = Slabs {
-        low: bounds.min,
-        step: bounds.extent() / BINS as f32,
-    };
+    let slabs = Slabs::new(&extent.bounds);
     let of_chunk = |chunk: &[Item]| {
         let mut histogram = NOTHING;
         for item in chunk {
@@ -143,7 +155,7 @@ pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Opt
     };
     let mut best: Option<Plane> = None;
     for (axis, bins) in histogram.iter().enumerate() {
-        if !(slabs.step[axis] > 0.0 && slabs.step[axis].is_finite()) {
+        if slabs.scale[axis] == 0.0 {
             continue;
         }
         let mut above = [(0.0, 0); BINS];
@@ -173,16 +185,20 @@ pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Opt
     best
 }
 
-/// Adds an item to all slabs that it is in.
+/// Adds an item to all slabs that it is in. The boxes there are estimates, in single precision: how items are cut is up to [`cut`].
 fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corners) {
-    let bounds = item.box4();
+    let mut bounds = item.box4();
+    // In place of the name, a small number with which some processors are slow.
+    bounds.low.w = 0.0;
+    let (first, last) = (slabs.bins(bounds.low), slabs.bins(bounds.high));
     let triangle = corners.corners(item.index());
+    let triangle = triangle.map(|corners| corners.map(|corner| corner.extend(0.0)));
+    let places = triangle.map(|corners| corners.map(|corner| slabs.bins(corner)));
     for (axis, bins) in histogram.iter_mut().enumerate() {
-        let first = slabs.bin(axis, bounds.low[axis]);
-        let last = slabs.bin(axis, bounds.high[axis]).max(first);
-        let Some(triangle) = triangle.filter(|_| first < last) else {
+        let (first, last) = (first[axis], last[axis]);
+        let (Some(triangle), Some(places), true) = (triangle, places, first < last) else {
             // Not to be cut: where its middle is.
-            let bin = &mut bins[slabs.bin(axis, item.center()[axis])];
+            let bin = &mut bins[slabs.bins(item.center())[axis]];
             bin.bounds = bin.bounds.union(bounds);
             bin.enter += 1;
             bin.exit += 1;
@@ -190,16 +206,22 @@ fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corn
         };
         bins[first].enter += 1;
         bins[last].exit += 1;
-        let mut rest = bounds;
-        for (bin, slot) in bins.iter_mut().enumerate().take(last).skip(first) {
-            let [part, others] = cut(&triangle, rest, axis, slabs.place(axis, bin + 1));
-            if !part.is_empty() {
-                slot.bounds = slot.bounds.union(part);
+        // What is beyond a fragment's box counts as being at its border.
+        let within = |point: Vec4| point.max(bounds.low).min(bounds.high);
+        for i in 0..3 {
+            let (mut a, mut b) = (triangle[i], triangle[(i + 1) % 3]);
+            let (mut from, mut to) = (places[i][axis], places[(i + 1) % 3][axis]);
+            let bin = &mut bins[from.clamp(first, last)];
+            bin.bounds = bin.bounds.grow(within(a));
+            if from > to {
+                (a, b, from, to) = (b, a, to, from);
             }
-            rest = others;
-        }
-        if !rest.is_empty() {
-            bins[last].bounds = bins[last].bounds.union(rest);
+            let slope = (b - a) / (b[axis] - a[axis]);
+            for bin in from.max(first)..to.min(last) {
+                let point = within(a + slope * (slabs.place(axis, bin + 1) - a[axis]));
+                bins[bin].bounds = bins[bin].bounds.grow(point);
+                bins[bin + 1].bounds = bins[bin + 1].bounds.grow(point);
+            }
         }
     }
 }
