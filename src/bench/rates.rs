@@ -38,7 +38,9 @@ pub fn measure(backends: &[&dyn Accel], stream: &Stream, turns: usize) -> Vec<Ra
         let mut times = vec![vec![Vec::with_capacity(turns); waves.len()]; backends.len()];
         for turn in 0..turns {
             for i in 0..backends.len() {
-                let who = (i + turn + place) % backends.len();
+                let next = (i + turn + place) % backends.len();
+                // Every other turn the other way round: nobody always follows the same one.
+                let who = if turn % 2 == 0 { next } else { backends.len() - 1 - next };
                 for (wave, time) in trace_all(backends[who], kind, waves) {
                     times[who][wave].push(time);
                 }

@@ -58,6 +58,10 @@ fn bad_usage_is_code_2_and_leaves_nothing() {
         ),
         (&["render", "ball.pbrt", "--backend", "magic"], "magic"),
         (
+            &["render", "ball.pbrt", "--compact", "--not-robust"],
+            "cannot be used with",
+        ),
+        (
             &["render", "ball.pbrt", "--threads", "5000"],
             "expected a whole number from 1 to 4096",
         ),
