@@ -191,7 +191,11 @@ fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corn
     // In place of the name, a small number with which some processors are slow.
     bounds.low.w = 0.0;
     let (first, last) = (slabs.bins(bounds.low), slabs.bins(bounds.high));
-    let triangle = corners.corners(item.index());
+    let triangle = if first == last {
+        None
+    } else {
+        corners.corners(item.index())
+    };
     let triangle = triangle.map(|corners| corners.map(|corner| corner.extend(0.0)));
     let places = triangle.map(|corners| corners.map(|corner| slabs.bins(corner)));
     for (axis, bins) in histogram.iter_mut().enumerate() {
@@ -216,8 +220,12 @@ fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corn
             if from > to {
                 (a, b, from, to) = (b, a, to, from);
             }
-            let slope = (b - a) / (b[axis] - a[axis]);
-            for bin in from.max(first)..to.min(last) {
+            let crossed = from.max(first)..to.min(last);
+            if crossed.is_empty() {
+                continue;
+            }
+            let slope = (b - a) * (1.0 / (b[axis] - a[axis]));
+            for bin in crossed {
                 let point = within(a + slope * (slabs.place(axis, bin + 1) - a[axis]));
                 bins[bin].bounds = bins[bin].bounds.grow(point);
                 bins[bin + 1].bounds = bins[bin + 1].bounds.grow(point);
