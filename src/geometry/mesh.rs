@@ -183,8 +183,15 @@ impl TriangleMesh {
     }
 
     /// A box around a triangle at a time step.
+    #[inline(always)]
     pub fn triangle_bounds(&self, triangle: usize, step: usize) -> Bounds3 {
-        Bounds3::from_points(self.indices[triangle].map(|v| self.positions[step][v as usize]))
+        let [a, b, c] = self.indices[triangle];
+        let positions = self.positions[step].as_slice();
+        let [a, b, c] = [positions[a as usize], positions[b as usize], positions[c as usize]];
+        Bounds3 {
+            min: a.min(b).min(c),
+            max: a.max(b).max(c),
+        }
     }
 
     /// A box around all used and unused vertices over all times.

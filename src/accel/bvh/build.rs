@@ -4,22 +4,13 @@
 
 use std::ops::Range;
 
-use super::bins::{self, Split};
-use super::item::{Extent, Item};
-use super::leaf::LANES;
-use super::spatial::{self, Corners, Plane};
-use crate::math::Bounds3;
+use rayon::prelude::*;
 
-/// How to build.
-#[derive(Clone, Copy)]
-pub struct BuildParams<'a> {
-    /// Bins along an axis, at most [`bins::MOST`].
-    pub bins: usize,
-    /// Items of lesser index are triangles and may share a leaf, as many as a block holds; others have one to themselves.
-    pub triangles: u32,
-    /// The corners of triangles, for spatial splits; `None` for none.
-    pub corners: Option<&'a dyn Corners>,
-}
+use super::bins::{self, Split};
+use super::item::{Box4, Extent, Item};
+use super::leaf::LANES;
+use super::primitives::Primitives;
+use super::spatial::{self, Plane};
 
 /// A node of a binary tree, which is a list of them: what is below a node precedes it, that of its first child, then that of its second;
 /// the root is the last. Parts of it can be joined as they are.
@@ -29,7 +20,7 @@ pub enum BinaryNode {
     Leaf(Leaf),
     /// Two trees, of which the second's root is just before.
     Inner {
-        /// Half of the area of the box around both, without overflow.
+        /// Half of the area of the box around both.
         half_area: f64,
         /// How far before the first's root is.
         back: u32,
@@ -64,27 +55,55 @@ pub const LEAST_PARALLEL: usize = 4096;
 /// Fragments that spatial splits may add, as a part of all triangles.
 const MOST_FRAGMENTS: f64 = 0.3;
 
-/// Builds a tree over `items`, of which there is at least one; they may become more, with gaps between those of different leaves. With a
-/// box around all.
-pub fn build(items: &mut Vec<Item>, params: &BuildParams<'_>) -> (Vec<BinaryNode>, Bounds3) {
-    let extent = bins::extent_of(items);
-    let count = items.len();
-    if params.corners.is_some() {
-        let room = (f64::from(params.triangles) * MOST_FRAGMENTS) as usize;
-        items.resize(count + room, items[0]);
-    }
+/// How to build.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildParams {
+    /// Bins along an axis, at most [`bins::MOST`].
+    pub bins: usize,
+    /// Whether triangles may be split.
+    pub splits: bool,
+}
+
+/// A tree, and what is in its leaves.
+pub struct Built {
+    /// The tree.
+    pub tree: Vec<BinaryNode>,
+    /// Items in the order of its leaves, with gaps between those of different leaves if triangles were split.
+    pub items: Vec<Item>,
+}
+
+/// Builds a tree over primitives, of which there is at least one.
+pub fn build(primitives: &impl Primitives, params: BuildParams) -> Built {
+    let census = primitives.census();
+    let count = census.count();
+    let room = if params.splits {
+        (f64::from(census.triangles) * MOST_FRAGMENTS) as usize
+    } else {
+        0
+    };
+    let mut items = Vec::with_capacity(count + room);
+    (0..count as u32)
+        .into_par_iter()
+        .map(|index| Item::new(&primitives.bounds(index), index))
+        .collect_into_vec(&mut items);
+    let extent = bins::extent_of(&items);
+    items.resize(count + room, items[0]);
     let builder = Builder {
+        primitives,
         params,
+        triangles: census.triangles,
         least_overlap: extent.bounds.half_area() * spatial::LEAST_OVERLAP,
     };
     let mut tree = Vec::new();
-    builder.range(items, Place { first: 0, level: 0 }, count, extent, &mut tree);
-    (tree, extent.bounds.bounds())
+    builder.range(&mut items, Place { first: 0, level: 0 }, count, extent, &mut tree);
+    Built { tree, items }
 }
 
-struct Builder<'a> {
-    params: &'a BuildParams<'a>,
-    least_overlap: f64,
+struct Builder<'a, P> {
+    primitives: &'a P,
+    params: BuildParams,
+    triangles: u32,
+    least_overlap: f32,
 }
 
 /// Where a range of items is among all, and how deep in the tree.
@@ -103,10 +122,10 @@ struct Divided {
     middle: usize,
 }
 
-impl Builder<'_> {
+impl<P: Primitives> Builder<'_, P> {
     /// Adds a tree over the first `count` items of a range; the rest of it is room for fragments.
     fn range(&self, items: &mut [Item], place: Place, count: usize, extent: Extent, tree: &mut Vec<BinaryNode>) {
-        if is_leaf(&items[..count], self.params.triangles) {
+        if is_leaf(&items[..count], self.triangles) {
             tree.push(BinaryNode::Leaf(Leaf {
                 first: place.first as u32,
                 count: count as u32,
@@ -125,13 +144,8 @@ impl Builder<'_> {
         };
         let build_left = |tree: &mut _| self.range(left, at(place.first), counts[0], extents[0], tree);
         let build_right = |tree: &mut _| self.range(right, at(place.first + middle), counts[1], extents[1], tree);
-        join(
-            count > LEAST_PARALLEL,
-            extent.bounds.half_area(),
-            tree,
-            build_left,
-            build_right,
-        );
+        let half_area = f64::from(extent.bounds.half_area());
+        join(count > LEAST_PARALLEL, half_area, tree, build_left, build_right);
     }
 
     /// Reorders items into two sets that are not empty.
@@ -139,14 +153,14 @@ impl Builder<'_> {
         let halving_levels = usize::BITS - items.len().leading_zeros();
         if level + halving_levels < MOST_LEVELS {
             let split = bins::best_split(&items[..count], extent, self.params.bins);
-            if let Some(divided) = self.divide_by_plane(items, count, extent, split.as_ref()) {
+            if self.params.splits
+                && let Some(divided) = self.divide_by_plane(items, count, extent, split.as_ref())
+            {
                 return divided;
             }
             if let Some(split) = split {
                 let (middle, extents) = partition(&mut items[..count], &split);
-                if middle > 0 && middle < count {
-                    return with_room(items, [middle, count - middle], extents);
-                }
+                return with_room(items, [middle, count - middle], extents);
             }
         }
         let middle = halve(&mut items[..count], extent);
@@ -162,17 +176,16 @@ impl Builder<'_> {
         extent: &Extent,
         split: Option<&Split>,
     ) -> Option<Divided> {
-        let corners = self.params.corners?;
         let room = items.len() - count;
         let least_overlap = self.least_overlap.max(extent.bounds.half_area() * spatial::LEAST_SHARE);
-        if room == 0 || count <= LANES || split.is_some_and(|split| split.overlap <= least_overlap) {
+        if room == 0 || count <= LANES || split.is_some_and(|split| split.overlap() <= least_overlap) {
             return None;
         }
-        let plane: Plane = spatial::best_plane(&items[..count], extent, corners)?;
+        let plane: Plane = spatial::best_plane(&items[..count], extent, self.primitives)?;
         if plane.both == 0 || split.is_some_and(|split| split.cost <= plane.cost) {
             return None;
         }
-        let sides = spatial::divide(&items[..count], &plane, corners, room);
+        let sides = spatial::divide(&items[..count], &plane, self.primitives, room);
         let counts = [sides[0].len(), sides[1].len()];
         if counts.contains(&0) || counts.contains(&count) {
             return None;
@@ -189,7 +202,7 @@ impl Builder<'_> {
 }
 
 /// Adds a node to a tree, and what two builders add below it, in parallel or one after the other.
-pub fn join(
+fn join(
     is_parallel: bool,
     half_area: f64,
     tree: &mut Vec<BinaryNode>,
@@ -231,25 +244,30 @@ fn with_room(items: &mut [Item], counts: [usize; 2], extents: [Extent; 2]) -> Di
 }
 
 /// Whether items may share a leaf.
-pub fn is_leaf(items: &[Item], triangles: u32) -> bool {
+fn is_leaf(items: &[Item], triangles: u32) -> bool {
     items.len() <= 1 || (items.len() <= LANES && items.iter().all(|item| item.index() < triangles))
 }
 
 /// Moves the items of the split's lower side to the front and returns how many they are, with the extents of both sides.
 fn partition(items: &mut [Item], split: &Split) -> (usize, [Extent; 2]) {
-    let (mut low, mut high) = (0, items.len());
-    let mut extents = [Extent::EMPTY; 2];
-    while low < high {
-        if split.is_below(&items[low]) {
-            extents[0] = extents[0].with(&items[low]);
-            low += 1;
-        } else {
-            extents[1] = extents[1].with(&items[low]);
-            high -= 1;
-            items.swap(low, high);
-        }
+    let mut centers = [Box4::EMPTY; 2];
+    let mut low = 0;
+    // Which side an item is on cannot be foreseen, so that nothing here branches on it.
+    for place in 0..items.len() {
+        let item = items[place];
+        let center = item.twice_center();
+        let is_below = split.is_below(center);
+        items[place] = items[low];
+        items[low] = item;
+        low += usize::from(is_below);
+        let centers = &mut centers[usize::from(!is_below)];
+        *centers = centers.grow(center);
     }
-    (low, extents)
+    let extent = |side: usize| Extent {
+        bounds: split.bounds[side],
+        centers: centers[side],
+    };
+    (low, [extent(0), extent(1)])
 }
 
 /// Divides by number, along the axis of greatest extent.
@@ -257,7 +275,7 @@ fn halve(items: &mut [Item], extent: &Extent) -> usize {
     let axis = extent.spread().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
-        let by_center = a.center()[axis].total_cmp(&b.center()[axis]);
+        let by_center = a.twice_center()[axis].total_cmp(&b.twice_center()[axis]);
         by_center.then(a.index().cmp(&b.index()))
     });
     middle
@@ -266,7 +284,8 @@ fn halve(items: &mut [Item], extent: &Extent) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec3;
+    use crate::accel::bvh::primitives::Census;
+    use crate::math::{Bounds3, Vec3};
 
     fn levels(tree: &[BinaryNode], root: usize) -> u32 {
         match tree[root] {
@@ -275,14 +294,38 @@ mod tests {
         }
     }
 
-    fn check(mut items: Vec<Item>) {
-        let count = items.len();
+    struct Boxes(Vec<Bounds3>);
+
+    impl Primitives for Boxes {
+        fn census(&self) -> Census {
+            Census {
+                triangles: self.0.len() as u32,
+                analytic: 0,
+                instances: 0,
+            }
+        }
+
+        fn bounds(&self, index: u32) -> Bounds3 {
+            self.0[index as usize]
+        }
+
+        fn bounds_of_all(&self) -> Bounds3 {
+            self.0.iter().copied().fold(Bounds3::EMPTY, Bounds3::union)
+        }
+
+        fn corners(&self, _index: u32) -> Option<[Vec3; 3]> {
+            None
+        }
+    }
+
+    fn check(boxes: impl IntoIterator<Item = [Vec3; 2]>) {
+        let boxes = Boxes(boxes.into_iter().map(|[min, max]| Bounds3 { min, max }).collect());
+        let count = boxes.0.len();
         let params = BuildParams {
             bins: 16,
-            triangles: u32::MAX,
-            corners: None,
+            splits: false,
         };
-        let (tree, _) = build(&mut items, &params);
+        let Built { tree, items } = build(&boxes, params);
         let levels = levels(&tree, tree.len() - 1);
         assert!(levels <= MOST_LEVELS, "{levels} levels");
         let mut next = 0;
@@ -299,28 +342,20 @@ mod tests {
         assert!(seen.iter().enumerate().all(|(i, &index)| i as u32 == index));
     }
 
-    fn item(index: usize, min: Vec3, max: Vec3) -> Item {
-        Item::new(&Bounds3 { min, max }, index as u32)
-    }
-
     #[test]
     fn identical_infinite_and_geometrically_spaced_boxes_keep_the_tree_shallow() {
-        check((0..100_000).map(|i| item(i, Vec3::ZERO, Vec3::ONE)).collect());
-        check((0..1000).map(|i| item(i, Vec3::NEG_INFINITY, Vec3::INFINITY)).collect());
-        check(
-            (0..1000)
-                .map(|i| item(i, Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)))
-                .collect(),
-        );
+        check((0..100_000).map(|_| [Vec3::ZERO, Vec3::ONE]));
+        check((0..1000).map(|_| [Vec3::NEG_INFINITY, Vec3::INFINITY]));
+        check((0..1000).map(|_| [Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)]));
         let spaced = |i: usize| Vec3::splat(2.0_f32.powi(i as i32 % 250 - 125)) * Vec3::new(1.0, -1.0, 0.5);
-        check((0..2000).map(|i| item(i, spaced(i), spaced(i))).collect());
+        check((0..2000).map(|i| [spaced(i); 2]));
     }
 
     #[test]
     fn every_count_is_built() {
         for count in 1..70 {
             let place = |i: usize| Vec3::new((i * 7 % 13) as f32, (i * 5 % 11) as f32, i as f32);
-            check((0..count).map(|i| item(i, place(i), place(i) + 1.0)).collect());
+            check((0..count).map(|i| [place(i), place(i) + 1.0]));
         }
     }
 }

@@ -5,24 +5,31 @@
 //! those of its two halves are, so that one pass from the leaves up finds them all. The cost of a leaf is the same in all trees; that of a
 //! node is its area.
 
-use super::build::{BinaryNode, Leaf};
-use super::node::{Child, ChildRef, Node, WIDTH};
+use std::ops::Range;
 
-/// Nodes of binary trees of which the order of children is left as it is.
-const FEW: usize = 1000;
+use arrayvec::ArrayVec;
 
-/// Makes the nodes of `tree`, the root first. `leaf` makes a leaf of items and returns it with its box.
-pub fn collapse<N: Node>(tree: &[BinaryNode], leaf: &mut impl FnMut(Leaf) -> (ChildRef, N::Bounds)) -> Vec<N> {
-    let mut nodes = Vec::new();
-    let Some((root, _)) = tree.split_last() else {
-        return nodes;
+use super::build::{BinaryNode, LEAST_PARALLEL, Leaf};
+use super::node::{Child, ChildRef, WIDTH};
+use super::topology::Topology;
+
+/// The wide tree of a binary one, which is not empty. `leaf` says what a leaf is, if it holds no triangles.
+pub fn collapse(tree: &[BinaryNode], leaf: &(impl Fn(Leaf) -> Option<ChildRef> + Sync)) -> Topology {
+    let mut shares = vec![Shares(0); tree.len()];
+    best_shares(tree, &mut shares);
+    let mut topology = Topology::default();
+    let collapser = Collapser { leaf };
+    let tree = Subtree {
+        nodes: tree,
+        shares: &shares,
     };
-    let shares = best_shares(tree);
-    let child = emit(tree, &shares, tree.len() - 1, &mut nodes, leaf);
-    if let BinaryNode::Leaf(_) = root {
-        nodes.push(N::new(&[child]));
+    if let Some(&BinaryNode::Leaf(items)) = tree.nodes.last() {
+        let root = topology.add_node();
+        topology.nodes[root][0] = collapser.leaf(items, &mut topology);
+    } else {
+        collapser.node(tree, &mut topology);
     }
-    nodes
+    topology
 }
 
 /// For each number of children that a subtree may become, how many of them its first half becomes; 0 where fewer children, or one, do.
@@ -44,23 +51,26 @@ impl Shares {
 /// Least costs of a subtree as at most 1, 2, ... children of a node.
 type Costs = [f64; WIDTH];
 
-/// The best shares of each node of a binary tree; of leaves none.
-fn best_shares(tree: &[BinaryNode]) -> Vec<Shares> {
-    // Of the subtrees whose parents are still to come.
-    let mut open: Vec<Costs> = Vec::new();
-    let shares = tree.iter().map(|node| match *node {
-        BinaryNode::Leaf(_) => {
-            open.push([0.0; WIDTH]);
-            Shares(0)
-        }
-        BinaryNode::Inner { half_area, .. } => {
-            let (second, first) = (open.pop().unwrap_or_default(), open.pop().unwrap_or_default());
-            let (costs, shares) = join(half_area, &first, &second);
-            open.push(costs);
-            shares
-        }
-    });
-    shares.collect()
+/// Finds the best shares of each node of a binary tree, of leaves none, and the costs of the root.
+fn best_shares(tree: &[BinaryNode], shares: &mut [Shares]) -> Costs {
+    let (root, below) = (tree.len() - 1, tree.len().saturating_sub(1));
+    let (half_area, back) = match tree[root] {
+        BinaryNode::Leaf(_) => return [0.0; WIDTH],
+        BinaryNode::Inner { half_area, back } => (half_area, back as usize),
+    };
+    let (first, second) = tree[..below].split_at(tree.len() - back);
+    let (shares, of_root) = shares.split_at_mut(below);
+    let (first_shares, second_shares) = shares.split_at_mut(first.len());
+    let mut of_first = || best_shares(first, first_shares);
+    let mut of_second = || best_shares(second, second_shares);
+    let (first, second) = if tree.len() > LEAST_PARALLEL {
+        rayon::join(of_first, of_second)
+    } else {
+        (of_first(), of_second())
+    };
+    let (costs, best) = join(half_area, &first, &second);
+    of_root[0] = best;
+    costs
 }
 
 fn join(half_area: f64, first: &Costs, second: &Costs) -> (Costs, Shares) {
@@ -89,57 +99,64 @@ fn join(half_area: f64, first: &Costs, second: &Costs) -> (Costs, Shares) {
     (costs, shares)
 }
 
-fn emit<N: Node>(
-    tree: &[BinaryNode],
-    shares: &[Shares],
-    root: usize,
-    nodes: &mut Vec<N>,
-    leaf: &mut impl FnMut(Leaf) -> (ChildRef, N::Bounds),
-) -> (ChildRef, N::Bounds) {
-    let back = match tree[root] {
-        BinaryNode::Leaf(items) => return leaf(items),
-        BinaryNode::Inner { back, .. } => back as usize,
-    };
-    let mut members = Members::default();
-    let share = shares[root].first(WIDTH);
-    members.add(tree, shares, root - back, share);
-    members.add(tree, shares, root - 1, WIDTH - share);
-    let index = nodes.len();
-    // The place of this node, so that parents precede children in memory.
-    nodes.push(N::new(&[]));
-    let mut children = Vec::with_capacity(WIDTH);
-    for &member in &members.trees[..members.count] {
-        children.push(emit(tree, shares, member, nodes, leaf));
-    }
-    // Nodes last: where any hit will do, the last are visited first, and in large trees that is faster.
-    if tree.len() > FEW {
-        children.sort_by_key(|(child, _)| matches!(child.get(), Child::Node(_)));
-    }
-    let bounds = children[1..].iter().fold(children[0].1, |a, b| N::union(a, b.1));
-    nodes[index] = N::new(&children);
-    (ChildRef::new(Child::Node(index)), bounds)
+/// A part of a binary tree: its root is the last node.
+#[derive(Clone, Copy)]
+struct Subtree<'a> {
+    nodes: &'a [BinaryNode],
+    shares: &'a [Shares],
 }
 
-/// The roots of the trees below a node.
-#[derive(Default)]
-struct Members {
-    trees: [usize; WIDTH],
-    count: usize,
+impl<'a> Subtree<'a> {
+    /// Both halves, and how many children each becomes if together they become at most `most`; `None` if they are to be one.
+    fn halves(self, most: usize) -> Option<[(Self, usize); 2]> {
+        let root = self.nodes.len() - 1;
+        let BinaryNode::Inner { back, .. } = self.nodes[root] else {
+            return None;
+        };
+        let count = (2..=most).rev().find(|&count| self.shares[root].first(count) != 0)?;
+        let share = self.shares[root].first(count);
+        let middle = self.nodes.len() - back as usize;
+        let part = |range: Range<usize>| Self {
+            nodes: &self.nodes[range.clone()],
+            shares: &self.shares[range],
+        };
+        Some([(part(0..middle), share), (part(middle..root), count - share)])
+    }
+
+    /// Adds it to the children of a node, as at most `most` of them.
+    fn add_to(self, children: &mut ArrayVec<Self, WIDTH>, most: usize) {
+        match self.halves(most) {
+            Some(halves) => halves.into_iter().for_each(|(half, most)| half.add_to(children, most)),
+            None => children.push(self),
+        }
+    }
 }
 
-impl Members {
-    /// Adds a subtree as at most `most` children.
-    fn add(&mut self, tree: &[BinaryNode], shares: &[Shares], root: usize, most: usize) {
-        if let BinaryNode::Inner { back, .. } = tree[root] {
-            let count = (2..=most).rev().find(|&count| shares[root].first(count) != 0);
-            if let Some(count) = count {
-                let share = shares[root].first(count);
-                self.add(tree, shares, root - back as usize, share);
-                self.add(tree, shares, root - 1, count - share);
-                return;
+struct Collapser<'a, L> {
+    leaf: &'a L,
+}
+
+impl<L: Fn(Leaf) -> Option<ChildRef> + Sync> Collapser<'_, L> {
+    /// Adds a node for a tree of more than one leaf, and what is below it.
+    fn node(&self, tree: Subtree<'_>, topology: &mut Topology) {
+        let node = topology.add_node();
+        let mut children = ArrayVec::new();
+        tree.add_to(&mut children, WIDTH);
+        let mut below = Vec::new();
+        for (slot, child) in children.into_iter().enumerate() {
+            if let Some(&BinaryNode::Leaf(leaf)) = child.nodes.last() {
+                topology.nodes[node][slot] = self.leaf(leaf, topology);
+            } else if tree.nodes.len() > LEAST_PARALLEL {
+                below.push((slot, child));
+            } else {
+                topology.nodes[node][slot] = ChildRef::new(Child::Node(topology.nodes.len()));
+                self.node(child, topology);
             }
         }
-        self.trees[self.count] = root;
-        self.count += 1;
+        topology.append_all(node, below, |child, part| self.node(child, part));
+    }
+
+    fn leaf(&self, leaf: Leaf, topology: &mut Topology) -> ChildRef {
+        (self.leaf)(leaf).unwrap_or_else(|| topology.add_block(leaf))
     }
 }

@@ -18,12 +18,20 @@ impl Box4 {
         high: Vec4::NEG_INFINITY,
     };
 
-    /// Around a box.
-    pub fn new(bounds: &Bounds3) -> Self {
+    /// Around a box as trees are shaped by it.
+    #[inline]
+    pub fn within_reach(bounds: &Bounds3) -> Self {
+        let reach = Vec4::splat(FARTHEST);
         Self {
-            low: bounds.min.extend(0.0),
-            high: bounds.max.extend(0.0),
+            low: bounds.min.extend(0.0).clamp(-reach, reach),
+            high: bounds.max.extend(0.0).clamp(-reach, reach),
         }
+    }
+
+    /// Twice its middle. The last lane means nothing.
+    #[inline]
+    pub fn twice_center(&self) -> Vec4 {
+        self.low + self.high
     }
 
     /// Around both.
@@ -67,13 +75,25 @@ impl Box4 {
         }
     }
 
-    /// Half of its area, without overflow; 0 of nothing.
-    pub fn half_area(&self) -> f64 {
-        half_area(&self.bounds())
+    /// Half of its area; 0 of nothing. Of boxes of [items](Item) it is finite.
+    #[inline]
+    pub fn half_area(&self) -> f32 {
+        let d = (self.high - self.low).max(Vec4::ZERO);
+        d.x * d.y + d.y * d.z + d.z * d.x
     }
 }
 
-/// As [`Bounds3::half_area`], without overflow.
+/// Beyond this boxes are cut off where trees are shaped: so areas, times numbers of primitives, are finite in single precision.
+const FARTHEST: f32 = 1e15;
+
+/// Whether nothing of a triangle is cut off where trees are shaped.
+#[inline]
+pub fn is_within_reach(corners: [Vec3; 3]) -> bool {
+    let [a, b, c] = corners.map(Vec3::abs);
+    a.max(b).max(c).max_element() <= FARTHEST
+}
+
+/// As [`Bounds3::half_area`], of any box without overflow.
 pub fn half_area(bounds: &Bounds3) -> f64 {
     if bounds.is_empty() {
         return 0.0;
@@ -82,17 +102,26 @@ pub fn half_area(bounds: &Bounds3) -> f64 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-/// Something to be put into a tree: a box, and in the last lane of its least corner the bits of a name.
+/// Something to be put into a tree: a box, and in the last lanes of its corners the bits of a name.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
     low: Vec4,
     high: Vec4,
 }
 
+/// Bits of a name in a lane: below the exponent of a number of usual size, as some processors are slow with the smallest.
+const NAME_BITS: u32 = 23;
+
+/// A number from 1 to 2 whose last bits are some of a name.
+fn named(bits: u32) -> f32 {
+    f32::from_bits(0x3f80_0000 | bits)
+}
+
 impl Item {
     /// What `index` names to the caller, in a box.
+    #[inline]
     pub fn new(bounds: &Bounds3, index: u32) -> Self {
-        Self::with_box(&Box4::new(bounds), index)
+        Self::with_box(&Box4::within_reach(bounds), index)
     }
 
     /// The same.
@@ -102,14 +131,16 @@ impl Item {
             low: bounds.low,
             high: bounds.high,
         };
-        item.low.w = f32::from_bits(index);
+        item.low.w = named(index & ((1 << NAME_BITS) - 1));
+        item.high.w = named(index >> NAME_BITS);
         item
     }
 
     /// What it is, to the caller.
     #[inline]
     pub fn index(&self) -> u32 {
-        self.low.w.to_bits()
+        let [low, high] = [self.low, self.high].map(|corner| corner.w.to_bits() & ((1 << NAME_BITS) - 1));
+        low | high << NAME_BITS
     }
 
     /// Its box.
@@ -121,17 +152,10 @@ impl Item {
         }
     }
 
-    /// The middle of its box; zero along axes where that is infinite. The last lane is zero.
+    /// Twice the middle of its box. The last lane means nothing.
     #[inline]
-    pub fn center(&self) -> Vec4 {
-        let (mut low, mut high) = (self.low, self.high);
-        // A name is a small number as a float, with which some processors are slow.
-        (low.w, high.w) = (0.0, 0.0);
-        let c = low * 0.5 + high * 0.5;
-        if c.is_finite() {
-            return c;
-        }
-        Vec4::select(c.abs().cmplt(Vec4::INFINITY), c, Vec4::ZERO)
+    pub fn twice_center(&self) -> Vec4 {
+        self.box4().twice_center()
     }
 }
 
@@ -140,7 +164,7 @@ impl Item {
 pub struct Extent {
     /// Around the items.
     pub bounds: Box4,
-    /// Around their centres.
+    /// Around twice their centres.
     pub centers: Box4,
 }
 
@@ -156,7 +180,7 @@ impl Extent {
     pub fn with(self, item: &Item) -> Self {
         Self {
             bounds: self.bounds.union(item.box4()),
-            centers: self.centers.grow(item.center()),
+            centers: self.centers.grow(item.twice_center()),
         }
     }
 
@@ -169,7 +193,7 @@ impl Extent {
         }
     }
 
-    /// The size of the box of the centres.
+    /// Twice the size of the box of the centres.
     pub fn spread(&self) -> Vec3 {
         (self.centers.high - self.centers.low).truncate()
     }

@@ -1,10 +1,14 @@
 //! Blocks of four triangles in struct-of-arrays form.
 
 use super::ray::LocalRay;
-use crate::geometry::{GeometryId, HitPacket, PrimitiveId, Shape, TriangleMesh, World};
+use crate::geometry::{GeometryId, HitPacket, TriangleMesh, World};
+use crate::math::{Bounds3, Vec3};
 
 /// Triangles in a block.
 pub const LANES: usize = 4;
+
+/// A triangle of a mesh.
+pub type Triangle<'a> = (GeometryId, &'a TriangleMesh, usize);
 
 /// The corners of four triangles, by corner, axis and lane.
 #[derive(Clone, Copy, Debug)]
@@ -18,11 +22,14 @@ impl Corners {
         Self([[[0.0; LANES]; 3]; 3])
     }
 
+    #[inline]
     fn set(&mut self, lane: usize, mesh: &TriangleMesh, triangle: usize, step: usize) {
-        for (corner, &vertex) in mesh.indices()[triangle].iter().enumerate() {
-            for (axis, x) in mesh.positions(step)[vertex as usize].to_array().into_iter().enumerate() {
-                self.0[corner][axis][lane] = x;
-            }
+        let positions = mesh.positions(step);
+        for (corner, &vertex) in self.0.iter_mut().zip(&mesh.indices()[triangle]) {
+            let position = positions[vertex as usize];
+            corner[0][lane] = position.x;
+            corner[1][lane] = position.y;
+            corner[2][lane] = position.z;
         }
     }
 
@@ -30,6 +37,17 @@ impl Corners {
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> [[f32; 3]; 3] {
         self.0.map(|corner| corner.map(|axis| axis[lane]))
+    }
+
+    /// A box around the first of the triangles.
+    fn bounds(&self, triangles: usize) -> Bounds3 {
+        let mut bounds = Bounds3::EMPTY;
+        for [x, y, z] in &self.0 {
+            for ((&x, &y), &z) in x.iter().zip(y).zip(z).take(triangles) {
+                bounds = bounds.grow(Vec3::new(x, y, z));
+            }
+        }
+        bounds
     }
 
     /// Linear between two; the operations are those of [`TriangleMesh::triangle`].
@@ -65,16 +83,16 @@ pub struct BlockIds {
 }
 
 impl BlockIds {
-    fn new(world: &World, triangles: &[(GeometryId, PrimitiveId)]) -> Self {
+    fn new(world: &World, triangles: &[Triangle<'_>]) -> Self {
         let mut ids = Self {
             mask: [0; LANES],
             geometry: [HitPacket::NONE; LANES],
             primitive: [HitPacket::NONE; LANES],
         };
-        for (lane, &(geometry, primitive)) in triangles.iter().enumerate() {
+        for (lane, &(geometry, _, triangle)) in triangles.iter().enumerate() {
             ids.mask[lane] = world.geometry(geometry).mask;
             ids.geometry[lane] = geometry.0;
-            ids.primitive[lane] = primitive.0;
+            ids.primitive[lane] = triangle as u32;
         }
         ids
     }
@@ -99,8 +117,17 @@ pub struct MovingBlock {
 
 /// What building and traversal ask of a block.
 pub trait Block: Send + Sync {
+    /// As of a node that it is below.
+    type Bounds: Copy + Send + Sync;
+
+    /// A box around nothing.
+    const NOTHING: Self::Bounds;
+
     /// Of at most four triangles of meshes, from time step `step` on.
-    fn new(world: &World, triangles: &[(GeometryId, PrimitiveId)], step: usize) -> Self;
+    fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self;
+
+    /// A box around the first of its triangles.
+    fn bounds(&self, triangles: usize) -> Self::Bounds;
 
     /// The corners at a fraction of the time segment, which may be put into `scratch`.
     fn corners<'a>(&'a self, fraction: f32, scratch: &'a mut Corners) -> &'a Corners;
@@ -118,11 +145,19 @@ impl FixedBlock {
 }
 
 impl Block for FixedBlock {
-    fn new(world: &World, triangles: &[(GeometryId, PrimitiveId)], step: usize) -> Self {
+    type Bounds = Bounds3;
+
+    const NOTHING: Bounds3 = Bounds3::EMPTY;
+
+    fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
         Self {
-            corners: gather(world, triangles, step),
+            corners: gather(triangles, step),
             ids: BlockIds::new(world, triangles),
         }
+    }
+
+    fn bounds(&self, triangles: usize) -> Bounds3 {
+        self.corners.bounds(triangles)
     }
 
     #[inline(always)]
@@ -137,12 +172,21 @@ impl Block for FixedBlock {
 }
 
 impl Block for MovingBlock {
-    fn new(world: &World, triangles: &[(GeometryId, PrimitiveId)], step: usize) -> Self {
+    /// At the start and at the end of the segment.
+    type Bounds = [Bounds3; 2];
+
+    const NOTHING: [Bounds3; 2] = [Bounds3::EMPTY; 2];
+
+    fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
         Self {
-            start: gather(world, triangles, step),
-            end: gather(world, triangles, step + 1),
+            start: gather(triangles, step),
+            end: gather(triangles, step + 1),
             ids: BlockIds::new(world, triangles),
         }
+    }
+
+    fn bounds(&self, triangles: usize) -> [Bounds3; 2] {
+        [&self.start, &self.end].map(|corners| corners.bounds(triangles))
     }
 
     #[inline(always)]
@@ -157,12 +201,11 @@ impl Block for MovingBlock {
     }
 }
 
-fn gather(world: &World, triangles: &[(GeometryId, PrimitiveId)], step: usize) -> Corners {
+#[inline(always)]
+fn gather(triangles: &[Triangle<'_>], step: usize) -> Corners {
     let mut corners = Corners::scratch();
-    for (lane, &(geometry, primitive)) in triangles.iter().enumerate() {
-        if let Shape::Mesh(mesh) = &world.geometry(geometry).shape {
-            corners.set(lane, mesh, primitive.index(), step);
-        }
+    for (lane, &(_, mesh, triangle)) in triangles.iter().enumerate() {
+        corners.set(lane, mesh, triangle, step);
     }
     corners
 }

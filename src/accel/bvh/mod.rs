@@ -1,5 +1,5 @@
-//! Our own BVH, pure Rust: binary trees by a binned SAH (`build`, `bins`), with spatial splits (`spatial`), or in little time by clustering
-//! (`ploc`), collapsed to eight children a node (`collapse`); and one traversal (`traverse`) over a kernel of vector instructions that is
+//! Our own BVH, pure Rust: binary trees by a binned SAH (`build`, `bins`), with spatial splits (`spatial`), collapsed to eight children a node
+//! (`collapse`), or such nodes at once along a Morton curve (`linear`), over what `primitives` says; and one traversal (`traverse`) over a kernel of vector instructions that is
 //! chosen at run time (`tracing`, `kernel`, `avx2`).
 //!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
@@ -17,17 +17,20 @@ mod item;
 mod kernel;
 mod lanes;
 mod leaf;
+mod linear;
 mod node;
 mod order;
 mod packet;
-mod ploc;
+mod pages;
 mod prepare;
+mod primitives;
 pub(super) mod query;
 pub(super) mod ray;
 mod spatial;
 mod stream;
 #[cfg(test)]
 mod tests;
+mod topology;
 mod tracing;
 mod traverse;
 mod tree;
@@ -73,7 +76,7 @@ pub struct Bvh {
 impl Bvh {
     /// Builds it, in the rayon pool of the caller. The tree does not depend on the number of threads.
     ///
-    /// Of low quality it is built by clustering, of medium quality by the surface area heuristic with 16 bins along each axis, of high
+    /// Of low quality it is built along a Morton curve, of medium quality by the surface area heuristic with 16 bins along each axis, of high
     /// quality with 32 bins and spatial splits. [`BuildOptions::robust`] and [`BuildOptions::compact`] make no difference.
     pub fn build(world: &Arc<World>, options: &BuildOptions) -> Self {
         let quality = options.quality;

@@ -140,6 +140,9 @@ pub trait Node: Send + Sync {
     /// The boxes of its children.
     type Bounds: Copy + Send + Sync;
 
+    /// A box around nothing.
+    const NOTHING: Self::Bounds;
+
     /// A node of at most eight children.
     fn new(children: &[(ChildRef, Self::Bounds)]) -> Self;
 
@@ -168,6 +171,8 @@ impl FixedNode {
 impl Node for FixedNode {
     type Bounds = Bounds3;
 
+    const NOTHING: Bounds3 = Bounds3::EMPTY;
+
     fn new(children: &[(ChildRef, Bounds3)]) -> Self {
         Self {
             planes: Planes::new(children.iter().map(|child| child.1)),
@@ -193,6 +198,8 @@ impl Node for FixedNode {
 impl Node for MovingNode {
     /// At the start and at the end of the segment.
     type Bounds = [Bounds3; 2];
+
+    const NOTHING: [Bounds3; 2] = [Bounds3::EMPTY; 2];
 
     fn new(children: &[(ChildRef, [Bounds3; 2])]) -> Self {
         Self {

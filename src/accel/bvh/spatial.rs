@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::bins::{CHUNK, cost};
 use super::item::{Box4, Extent, Item};
+use super::primitives::Primitives;
 use crate::math::{Vec3, Vec4};
 
 /// Bins along an axis.
@@ -15,16 +16,10 @@ const BINS: usize = 16;
 
 /// Splits are not tried where the boxes of an object split have less than this part of the area of the whole tree in common (Stich et
 /// al. 2009, section 4.5).
-pub const LEAST_OVERLAP: f64 = 1e-5;
+pub const LEAST_OVERLAP: f32 = 1e-5;
 
 /// Nor where they have less than this part of the area of the node in common, as little is to be gained there.
-pub const LEAST_SHARE: f64 = 0.1;
-
-/// The corners of the triangles that may be split.
-pub trait Corners: Sync {
-    /// Those of the item of this index; `None` if it is not to be split.
-    fn corners(&self, index: u32) -> Option<[Vec3; 3]>;
-}
+pub const LEAST_SHARE: f32 = 0.1;
 
 /// A plane across an axis.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +27,9 @@ pub struct Plane {
     axis: usize,
     place: f32,
     /// What the two sides cost.
-    pub cost: f64,
+    pub cost: f32,
     /// How many items are on both.
-    pub both: usize,
+    pub both: u32,
 }
 
 /// An edge's point at `place` along an axis, as a box that it is in for sure. The edge goes from one side to the other.
@@ -80,9 +75,9 @@ fn cut(corners: &[Vec3; 3], within: Box4, axis: usize, place: f32) -> [Box4; 2] 
 struct Bin {
     bounds: Box4,
     /// Items that begin here.
-    enter: usize,
+    enter: u32,
     /// Items that end here.
-    exit: usize,
+    exit: u32,
 }
 
 type Histogram = [[Bin; BINS]; 3];
@@ -127,12 +122,12 @@ impl Slabs {
 }
 
 /// The plane of least cost between slabs of the items' box, if there is one that divides them.
-pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Option<Plane> {
+pub fn best_plane(items: &[Item], extent: &Extent, primitives: &impl Primitives) -> Option<Plane> {
     let slabs = Slabs::new(&extent.bounds);
     let of_chunk = |chunk: &[Item]| {
         let mut histogram = NOTHING;
         for item in chunk {
-            add(&mut histogram, item, &slabs, corners);
+            add(&mut histogram, item, &slabs, primitives);
         }
         histogram
     };
@@ -153,6 +148,7 @@ pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Opt
     } else {
         items.par_chunks(CHUNK).map(of_chunk).reduce(|| NOTHING, union)
     };
+    let all = items.len() as u32;
     let mut best: Option<Plane> = None;
     for (axis, bins) in histogram.iter().enumerate() {
         if slabs.scale[axis] == 0.0 {
@@ -171,13 +167,13 @@ pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Opt
             count += bins[bin - 1].enter;
             let (above_cost, above_count) = above[bin];
             let cost = cost(&lower, count) + above_cost;
-            let divides = count < items.len() && above_count < items.len();
+            let divides = count < all && above_count < all;
             if divides && best.is_none_or(|best| cost < best.cost) {
                 best = Some(Plane {
                     axis,
                     place: slabs.place(axis, bin),
                     cost,
-                    both: (count + above_count).saturating_sub(items.len()),
+                    both: (count + above_count).saturating_sub(all),
                 });
             }
         }
@@ -186,15 +182,13 @@ pub fn best_plane(items: &[Item], extent: &Extent, corners: &dyn Corners) -> Opt
 }
 
 /// Adds an item to all slabs that it is in. The boxes there are estimates, in single precision: how items are cut is up to [`cut`].
-fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corners) {
-    let mut bounds = item.box4();
-    // In place of the name, a small number with which some processors are slow.
-    bounds.low.w = 0.0;
+fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, primitives: &impl Primitives) {
+    let bounds = item.box4();
     let (first, last) = (slabs.bins(bounds.low), slabs.bins(bounds.high));
     let triangle = if first == last {
         None
     } else {
-        corners.corners(item.index())
+        primitives.corners(item.index())
     };
     let triangle = triangle.map(|corners| corners.map(|corner| corner.extend(0.0)));
     let places = triangle.map(|corners| corners.map(|corner| slabs.bins(corner)));
@@ -202,7 +196,7 @@ fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corn
         let (first, last) = (first[axis], last[axis]);
         let (Some(triangle), Some(places), true) = (triangle, places, first < last) else {
             // Not to be cut: where its middle is.
-            let bin = &mut bins[slabs.bins(item.center())[axis]];
+            let bin = &mut bins[slabs.bins(item.twice_center() * 0.5)[axis]];
             bin.bounds = bin.bounds.union(bounds);
             bin.enter += 1;
             bin.exit += 1;
@@ -236,18 +230,18 @@ fn add(histogram: &mut Histogram, item: &Item, slabs: &Slabs, corners: &dyn Corn
 
 /// Divides items by a plane: those below, then those above. An item that it goes through is cut in two, unless it costs less to have all of
 /// it on one side (Stich et al. 2009, "reference unsplitting"), or `room` for more items is used up.
-pub fn divide(items: &[Item], plane: &Plane, corners: &dyn Corners, room: usize) -> [Vec<Item>; 2] {
+pub fn divide(items: &[Item], plane: &Plane, primitives: &impl Primitives, room: usize) -> [Vec<Item>; 2] {
     let (axis, place) = (plane.axis, plane.place);
     let mut sides = [Vec::with_capacity(items.len()), Vec::with_capacity(items.len())];
     let mut boxes = [Box4::EMPTY; 2];
     let mut straddling = Vec::new();
     for item in items {
         let bounds = item.box4();
-        let triangle = corners.corners(item.index());
+        let triangle = primitives.corners(item.index());
         let side = match triangle {
             _ if bounds.high[axis] <= place => 0,
             _ if bounds.low[axis] >= place => 1,
-            None => usize::from(item.center()[axis] >= place),
+            None => usize::from(item.twice_center()[axis] * 0.5 >= place),
             Some(triangle) => {
                 let parts = cut(&triangle, bounds, axis, place);
                 match parts.map(|part| part.is_empty()) {
@@ -267,7 +261,7 @@ pub fn divide(items: &[Item], plane: &Plane, corners: &dyn Corners, room: usize)
     let mut room = room;
     for (item, parts) in straddling {
         let whole = item.box4();
-        let counts = [sides[0].len(), sides[1].len()];
+        let counts = [&sides[0], &sides[1]].map(|side| side.len() as u32);
         let cut_cost = cost(&boxes[0].union(parts[0]), counts[0] + 1) + cost(&boxes[1].union(parts[1]), counts[1] + 1);
         let whole_cost =
             |side: usize| cost(&boxes[side].union(whole), counts[side] + 1) + cost(&boxes[1 - side], counts[1 - side]);

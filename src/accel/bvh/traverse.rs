@@ -4,9 +4,10 @@ use super::Scene;
 use super::kernel::{BoxHits, Kernel};
 use super::leaf::{Block, Corners};
 use super::node::{Child, ChildRef, Node, Planes, WIDTH};
+use super::primitives::mesh;
 use super::query::{Candidate, Query};
 use super::ray::{Line, LocalRay};
-use super::tree::{GroupTrees, Tree, mesh};
+use super::tree::{GroupTrees, Tree};
 use crate::geometry::{HitPacket, InstanceId};
 
 use super::build::MOST_LEVELS;

@@ -2,16 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::build::{self, BinaryNode, BuildParams, Leaf};
+use super::build::{self, BuildParams, Built, Leaf};
 use super::collapse::collapse;
 use super::item::{Item, half_area};
 use super::leaf::{Block, FixedBlock, LANES, MovingBlock};
-use super::node::{Child, ChildRef, FixedNode, MovingNode, Node, WIDTH};
-use super::ploc;
+use super::linear;
+use super::node::{Child, FixedNode, MovingNode, Node, WIDTH};
+use super::pages::vec_in_large_pages;
+use super::primitives::{self, Fixed, Moving, Primitives, Triangles, mesh};
 use super::ray::MARGIN;
-use super::spatial::Corners;
+use super::topology::Topology;
 use crate::accel::BuildQuality;
-use crate::geometry::{GeometryId, PrimitiveId, Shape, TriangleMesh, World};
+use crate::geometry::{GeometryId, PrimitiveId, TriangleMesh, World};
 use crate::math::{Bounds3, Vec3};
 
 /// A tree of 8-wide nodes; the root is the first.
@@ -76,14 +78,6 @@ impl<N, B> Tree<N, B> {
     }
 }
 
-/// The mesh of a geometry that is one.
-pub fn mesh(world: &World, id: GeometryId) -> Option<&TriangleMesh> {
-    match &world.geometry(id).shape {
-        Shape::Mesh(mesh) => Some(mesh),
-        _ => None,
-    }
-}
-
 impl GroupTrees {
     /// Builds the trees over geometries and, at the top level, instances, whose boxes are given.
     pub fn build(world: &World, members: &[GeometryId], instances: &[Bounds3], quality: BuildQuality) -> Self {
@@ -100,35 +94,102 @@ impl GroupTrees {
     }
 }
 
-/// The corners of the triangles of a tree.
-struct Triangles<'a> {
-    world: &'a World,
-    names: &'a [(GeometryId, PrimitiveId)],
+/// What holds triangles, other primitives and instances together.
+struct Shape {
+    topology: Topology,
+    /// The names of what is in the leaves, where they say.
+    order: Vec<u32>,
+    /// The boxes of the leaves of triangles, where they are not those of the triangles.
+    boxes: Option<Vec<Bounds3>>,
 }
 
-impl Corners for Triangles<'_> {
-    fn corners(&self, index: u32) -> Option<[Vec3; 3]> {
-        let &(geometry, primitive) = self.names.get(index as usize)?;
-        mesh(self.world, geometry).map(|mesh| mesh.triangle(primitive.index(), 0.0))
+impl Shape {
+    /// Over primitives; `None` over nothing.
+    fn new(primitives: &impl Primitives, quality: BuildQuality) -> Option<Self> {
+        if primitives.census().count() == 0 {
+            return None;
+        }
+        let params = match quality {
+            BuildQuality::Low => {
+                let (topology, order) = linear::build(primitives);
+                return Some(Self {
+                    topology,
+                    order,
+                    boxes: None,
+                });
+            }
+            BuildQuality::Medium => BuildParams {
+                bins: 16,
+                splits: false,
+            },
+            BuildQuality::High => BuildParams { bins: 32, splits: true },
+        };
+        let Built { tree, items } = build::build(primitives, params);
+        let census = primitives.census();
+        let analytic = |leaf: Leaf| {
+            let index = items[leaf.range().start].index();
+            (index >= census.triangles).then(|| census.child(index))
+        };
+        let topology = collapse(&tree, &analytic);
+        drop(tree);
+        let boxes = params.splits.then(|| {
+            let of_item = |item: &Item| match primitives.corners(item.index()) {
+                Some(corners) => fragment_bounds(&item.box4().bounds(), corners),
+                None => primitives.bounds(item.index()),
+            };
+            let of_leaf = |leaf: &Leaf| {
+                let boxes = items[leaf.range()].iter().map(of_item);
+                boxes.fold(Bounds3::EMPTY, Bounds3::union)
+            };
+            topology.blocks.par_iter().with_min_len(256).map(of_leaf).collect()
+        });
+        Some(Self {
+            order: items.par_iter().map(Item::index).collect(),
+            topology,
+            boxes,
+        })
+    }
+
+    /// The blocks of its leaves, and boxes around these.
+    fn blocks<B: Block>(&self, world: &World, triangles: &Triangles<'_>, step: usize) -> (Vec<B>, Vec<B::Bounds>) {
+        let block = |(leaf, bounds): (&Leaf, &mut B::Bounds)| {
+            let in_leaf = &self.order[leaf.range()];
+            let mut indices = [in_leaf[0]; LANES];
+            indices[..in_leaf.len()].copy_from_slice(in_leaf);
+            indices.sort_unstable();
+            // Fragments of one triangle may share a leaf.
+            let mut members = [triangles.find(indices[0]); LANES];
+            let mut count = 1;
+            for i in 1..LANES {
+                if indices[i] != indices[i - 1] {
+                    members[count] = triangles.find(indices[i]);
+                    count += 1;
+                }
+            }
+            let block = B::new(world, &members[..count], step);
+            *bounds = block.bounds(count);
+            block
+        };
+        let leaves = self.topology.blocks.par_iter().with_min_len(256);
+        let mut blocks = vec_in_large_pages(leaves.len());
+        let mut bounds = vec![B::NOTHING; leaves.len()];
+        leaves.zip(&mut bounds).map(block).collect_into_vec(&mut blocks);
+        (blocks, bounds)
     }
 }
 
-impl Triangles<'_> {
-    /// A box around what is of a triangle in the box of a fragment, for rays: the triangle test moves a triangle by a part of its own
-    /// coordinates, which nodes know of whole triangles only.
-    fn fragment_bounds(&self, fragment: &Bounds3, index: u32) -> Bounds3 {
-        let Some(whole) = self.corners(index).map(Bounds3::from_points) else {
-            return *fragment;
-        };
-        if *fragment == whole {
-            return whole;
-        }
-        let size = whole.min.abs().max(whole.max.abs());
-        let margin = 2.0 * MARGIN * (size + Vec3::splat(size.max_element()));
-        Bounds3 {
-            min: (fragment.min - margin).max(whole.min),
-            max: (fragment.max + margin).min(whole.max),
-        }
+/// A box around what is of a triangle in the box of a fragment, for rays: the triangle test moves a triangle by a part of its own
+/// coordinates, which nodes know of whole triangles only.
+fn fragment_bounds(fragment: &Bounds3, corners: [Vec3; 3]) -> Bounds3 {
+    let whole = Bounds3::from_points(corners);
+    if *fragment == whole {
+        return whole;
+    }
+    let size = whole.min.abs().max(whole.max.abs());
+    let margin = 2.0 * MARGIN * (size + Vec3::splat(size.max_element()));
+    Bounds3 {
+        min: (fragment.min - margin).max(whole.min),
+        max: (fragment.max + margin).min(whole.max),
     }
 }
 
@@ -138,76 +199,21 @@ fn fixed_tree(
     instances: &[Bounds3],
     quality: BuildQuality,
 ) -> Option<FixedTree> {
-    let mut names = Vec::new();
-    let mut analytic = Vec::new();
-    let mut boxes = Vec::new();
-    for &id in members {
-        if let Shape::Mesh(mesh) = &world.geometry(id).shape
-            && !mesh.is_moving()
-        {
-            let bounds = (0..mesh.triangle_count()).into_par_iter();
-            boxes.par_extend(bounds.map(|i| mesh.triangle_bounds(i, 0)));
-            names.extend((0..mesh.triangle_count()).map(|i| (id, PrimitiveId::from_index(i))));
-        }
+    let fixed = Fixed::new(world, members, instances);
+    let mut shape = Shape::new(&fixed, quality)?;
+    let (blocks, mut bounds) = shape.blocks(world, &fixed.triangles, 0);
+    if let Some(boxes) = shape.boxes.take() {
+        bounds = boxes;
     }
-    for &id in members {
-        let shape = &world.geometry(id).shape;
-        if shape.is_analytic() {
-            let bounds = (0..shape.primitive_count()).into_par_iter();
-            boxes.par_extend(bounds.map(|i| shape.primitive_bounds(i)));
-            analytic.extend((0..shape.primitive_count()).map(|i| (id, PrimitiveId::from_index(i))));
-        }
-    }
-    boxes.extend_from_slice(instances);
-    let first_instance = names.len() + analytic.len();
-    let triangles = Triangles { world, names: &names };
-    let Built { tree, bounds, items } = binary(boxes, names.len(), quality, Some(&triangles))?;
-
-    let mut leaves = Vec::new();
-    let nodes = collapse(&tree, &mut |leaf| {
-        let items = &items[leaf.range()];
-        let first = items[0].index() as usize;
-        if first >= names.len() {
-            let child = if first < first_instance {
-                Child::Analytic(first - names.len())
-            } else {
-                Child::Instance(first - first_instance)
-            };
-            return (ChildRef::new(child), items[0].box4().bounds());
-        }
-        let bounds = items
-            .iter()
-            .map(|item| triangles.fragment_bounds(&item.box4().bounds(), item.index()))
-            .fold(Bounds3::EMPTY, Bounds3::union);
-        leaves.push(leaf);
-        (ChildRef::new(Child::Block(leaves.len() - 1)), bounds)
+    let (nodes, bounds) = shape.topology.fit(|leaf| match leaf {
+        Child::Block(index) => bounds[index],
+        other => fixed.leaf_bounds(other),
     });
-    // Blocks are the most of a tree: what is done with makes room for them.
-    drop(tree);
-    let in_no_block = (GeometryId(0), PrimitiveId(0));
-    let name = |item: &Item| names.get(item.index() as usize).copied().unwrap_or(in_no_block);
-    let ordered: Vec<_> = items.par_iter().map(name).collect();
-    drop((items, names));
-    let block = |leaf: &Leaf| {
-        let triangles = &ordered[leaf.range()];
-        let mut members = [triangles[0]; LANES];
-        members[..triangles.len()].copy_from_slice(triangles);
-        // Fragments of one triangle may share a leaf.
-        members.sort_unstable_by_key(|(geometry, primitive)| (geometry.0, primitive.0));
-        let mut count = 1;
-        for i in 1..LANES {
-            if members[i] != members[count - 1] {
-                members[count] = members[i];
-                count += 1;
-            }
-        }
-        FixedBlock::new(world, &members[..count], 0)
-    };
     Some(Tree {
         bounds,
         nodes,
-        blocks: leaves.par_iter().with_min_len(256).map(block).collect(),
-        analytic,
+        blocks,
+        analytic: fixed.analytic,
     })
 }
 
@@ -235,94 +241,29 @@ fn moving_trees(world: &World, members: &[GeometryId], quality: BuildQuality) ->
 /// A tree for each segment of time. Those of high quality are built one by one; of others the shape is that of the first, refitted
 /// to where the triangles are in each.
 fn segment_trees(world: &World, meshes: &[GeometryId], segments: usize, quality: BuildQuality) -> Vec<MovingTree> {
-    let mut names = Vec::new();
-    for &id in meshes {
-        let count = mesh(world, id).map_or(0, TriangleMesh::triangle_count);
-        names.extend((0..count).map(|i| (id, PrimitiveId::from_index(i))));
-    }
+    let triangles = Triangles::new(world, meshes, TriangleMesh::is_moving);
     let shape = |segment: usize| {
-        let middle = |name: &(GeometryId, PrimitiveId)| {
-            let [a, b] = ends(world, *name, segment);
-            Bounds3 {
-                min: a.min * 0.5 + b.min * 0.5,
-                max: a.max * 0.5 + b.max * 0.5,
-            }
+        let moving = Moving {
+            triangles: &triangles,
+            segment,
         };
-        binary(names.iter().map(middle).collect(), names.len(), quality, None)
+        Shape::new(&moving, quality)
     };
     let shared = if quality == BuildQuality::High { None } else { shape(0) };
     let tree = |segment: usize| {
         let own = if shared.is_some() { None } else { shape(segment) };
-        let built = shared.as_ref().or(own.as_ref())?;
-        Some(moving_tree(world, &names, segment, built))
+        let shape = shared.as_ref().or(own.as_ref())?;
+        let (blocks, bounds) = shape.blocks::<MovingBlock>(world, &triangles, segment);
+        let (nodes, [start, end]) = shape.topology.fit(|leaf| match leaf {
+            Child::Block(index) => bounds[index],
+            _ => MovingNode::NOTHING,
+        });
+        Some(Tree {
+            bounds: primitives::between(start, end),
+            nodes,
+            blocks,
+            analytic: Vec::new(),
+        })
     };
     (0..segments).into_par_iter().filter_map(tree).collect()
-}
-
-/// The boxes of a triangle at both ends of a segment.
-fn ends(world: &World, (id, primitive): (GeometryId, PrimitiveId), segment: usize) -> [Bounds3; 2] {
-    let at = |step: usize| mesh(world, id).map_or(Bounds3::EMPTY, |mesh| mesh.triangle_bounds(primitive.index(), step));
-    [at(segment), at(segment + 1)]
-}
-
-/// A tree of the shape of `tree` over the triangles as they are in a segment.
-fn moving_tree(world: &World, names: &[(GeometryId, PrimitiveId)], segment: usize, built: &Built) -> MovingTree {
-    let mut blocks = Vec::new();
-    let nodes = collapse(&built.tree, &mut |leaf| {
-        let items = &built.items[leaf.range()];
-        let members: Vec<_> = items.iter().map(|item| names[item.index() as usize]).collect();
-        blocks.push(MovingBlock::new(world, &members, segment));
-        let bounds = members.iter().map(|&name| ends(world, name, segment));
-        let bounds = bounds.fold([Bounds3::EMPTY; 2], MovingNode::union);
-        (ChildRef::new(Child::Block(blocks.len() - 1)), bounds)
-    });
-    Tree {
-        bounds: built.bounds,
-        nodes,
-        blocks,
-        analytic: Vec::new(),
-    }
-}
-
-/// A binary tree, a box around all that is in it, and the items, where its leaves say.
-struct Built {
-    tree: Vec<BinaryNode>,
-    bounds: Bounds3,
-    items: Vec<Item>,
-}
-
-/// A binary tree over boxes, the first `triangles` of which are those of triangles; `None` over nothing.
-fn binary(
-    boxes: Vec<Bounds3>,
-    triangles: usize,
-    quality: BuildQuality,
-    corners: Option<&Triangles<'_>>,
-) -> Option<Built> {
-    // Indices are below 2^32: each box is of a primitive or an instance, whose own numbers are; a sum that is not is more than
-    // memory holds.
-    let mut items: Vec<Item> = boxes
-        .into_par_iter()
-        .enumerate()
-        .map(|(index, bounds)| Item::new(&bounds, PrimitiveId::from_index(index).0))
-        .collect();
-    if items.is_empty() {
-        return None;
-    }
-    let triangles = triangles as u32;
-    if quality == BuildQuality::Low
-        && let Some((tree, bounds)) = ploc::build(&mut items, triangles)
-    {
-        return Some(Built { tree, bounds, items });
-    }
-    let (bins, corners) = match quality {
-        BuildQuality::Low | BuildQuality::Medium => (16, None),
-        BuildQuality::High => (32, corners.map(|corners| corners as &dyn Corners)),
-    };
-    let params = BuildParams {
-        bins,
-        triangles,
-        corners,
-    };
-    let (tree, bounds) = build::build(&mut items, &params);
-    Some(Built { tree, bounds, items })
 }

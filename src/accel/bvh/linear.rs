@@ -1,0 +1,341 @@
+//! A tree in the least time: a linear BVH (Lauterbach et al. 2009, "Fast BVH Construction on GPUs") of eight children a node.
+//!
+//! Primitives are sorted along a Morton curve. A node's part of the curve is divided where the codes first differ, then the largest of its
+//! parts, until there are eight. Where all codes are the same the curve is drawn anew through the box of what is there, and where they
+//! still are, by number. The tree is a function of the primitives alone.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::bins::TO_INTEGER;
+use super::build::Leaf;
+use super::item::Box4;
+use super::leaf::LANES;
+use super::node::{Child, ChildRef, WIDTH};
+use super::primitives::{Census, Primitives};
+use super::topology::Topology;
+use crate::math::Vec3;
+
+/// Primitives that one task takes at a time.
+const CHUNK: usize = 32 * 1024;
+
+/// Bits of codes by which keys are first dealt out.
+const BUCKET_BITS: u32 = 11;
+
+/// Of a primitive, its code along the curve above its number.
+type Key = u64;
+
+/// How keys are made of codes and numbers.
+#[derive(Clone, Copy)]
+struct Format {
+    /// Bits of a number, as many as the largest needs.
+    index_bits: u32,
+    /// Cells along an axis, in bits: as many as there is place for.
+    cell_bits: u32,
+}
+
+impl Format {
+    fn new(count: usize) -> Self {
+        let index_bits = usize::BITS - count.leading_zeros();
+        Self {
+            index_bits,
+            cell_bits: ((Key::BITS - index_bits) / 3).min(21),
+        }
+    }
+
+    fn index(self, key: Key) -> u32 {
+        (key & ((1 << self.index_bits) - 1)) as u32
+    }
+
+    fn code(self, key: Key) -> u64 {
+        key >> self.index_bits
+    }
+}
+
+/// Builds a tree over primitives, of which there is at least one; with their numbers in the order of its leaves.
+pub fn build(primitives: &impl Primitives) -> (Topology, Vec<u32>) {
+    let census = primitives.census();
+    let format = Format::new(census.count());
+    let curve = Curve::through(Box4::within_reach(&primitives.bounds_of_all()), format);
+    let mut keys = sorted(census.count() as u32, format, |index| curve.key(index, primitives));
+    let builder = Builder {
+        primitives,
+        census,
+        format,
+    };
+    let mut topology = Topology::default();
+    builder.node(&mut keys, 0, false, &mut topology);
+    let order = keys.par_iter().map(|&key| format.index(key)).collect();
+    (topology, order)
+}
+
+/// A Morton curve through a box.
+struct Curve {
+    /// The lower corner of the box, twice.
+    low: Vec3,
+    /// Cells a unit of length, halved.
+    scale: Vec3,
+    format: Format,
+}
+
+impl Curve {
+    fn through(bounds: Box4, format: Format) -> Self {
+        let cells = ((1 << format.cell_bits) - 1) as f32;
+        let scale = 0.5 * cells / (bounds.high - bounds.low).truncate();
+        Self {
+            low: 2.0 * bounds.low.truncate(),
+            // An axis without extent has all in its first cell.
+            scale: Vec3::select(scale.cmplt(Vec3::INFINITY), scale, Vec3::ZERO),
+            format,
+        }
+    }
+
+    /// The key of a primitive. What is far outside of the box, as only boxes that were cut off are, is in any cell.
+    #[inline]
+    fn key(&self, index: u32, primitives: &impl Primitives) -> Key {
+        let bounds = primitives.bounds(index);
+        let cell = (bounds.min + bounds.max - self.low) * self.scale + TO_INTEGER;
+        let [x, y, z] = cell.to_array().map(|x| spread(x.to_bits()));
+        let code = x | y << 1 | z << 2;
+        code << self.format.index_bits | Key::from(index)
+    }
+}
+
+/// Bits that are spread at a time.
+const SPREAD_BITS: u32 = 7;
+
+/// Numbers of seven bits with two zeros between each.
+const SPREAD: [u32; 1 << SPREAD_BITS] = {
+    let mut table = [0; 1 << SPREAD_BITS];
+    let mut x = 0;
+    while x < table.len() {
+        let mut bit = 0;
+        while bit < SPREAD_BITS {
+            table[x] |= ((x >> bit & 1) as u32) << (3 * bit);
+            bit += 1;
+        }
+        x += 1;
+    }
+    table
+};
+
+/// Puts two zeros between the lowest 21 bits of a number.
+#[inline]
+fn spread(x: u32) -> u64 {
+    let part = |index: u32| {
+        let bits = x >> (SPREAD_BITS * index) & ((1 << SPREAD_BITS) - 1);
+        u64::from(SPREAD[bits as usize]) << (3 * SPREAD_BITS * index)
+    };
+    part(0) | part(1) | part(2)
+}
+
+/// Makes keys and sorts them: a chunk at a time they are dealt out by their highest bits, then each bucket is sorted.
+fn sorted(count: u32, format: Format, key: impl Fn(u32) -> Key + Sync) -> Vec<Key> {
+    let chunk = |chunk: usize| {
+        let first = (chunk * CHUNK) as u32;
+        (first..count.min(first.saturating_add(CHUNK as u32))).map(&key)
+    };
+    let chunks = (count as usize).div_ceil(CHUNK);
+    if chunks == 1 {
+        let mut keys: Vec<Key> = chunk(0).collect();
+        keys.sort_unstable();
+        return keys;
+    }
+    let shift = format.index_bits + 3 * format.cell_bits - BUCKET_BITS;
+    let bucket = |key: Key| (key >> shift) as usize;
+    // With where the buckets end.
+    let deal = |index: usize| {
+        let keys: Vec<Key> = chunk(index).collect();
+        let mut next = vec![0; 1 << BUCKET_BITS];
+        for &key in &keys {
+            next[bucket(key)] += 1;
+        }
+        let mut first = 0;
+        for next in &mut next {
+            (*next, first) = (first, first + *next);
+        }
+        let mut dealt = vec![0; keys.len()];
+        for &key in &keys {
+            let next = &mut next[bucket(key)];
+            dealt[*next as usize] = key;
+            *next += 1;
+        }
+        (dealt, next)
+    };
+    let dealt: Vec<(Vec<Key>, Vec<u32>)> = (0..chunks).into_par_iter().map(deal).collect();
+    let part = |bucket: usize| {
+        dealt.iter().map(move |(keys, ends)| {
+            let first = bucket.checked_sub(1).map_or(0, |before| ends[before]);
+            &keys[first as usize..ends[bucket] as usize]
+        })
+    };
+    let mut keys = vec![0; count as usize];
+    let mut rest = keys.as_mut_slice();
+    let mut buckets = Vec::with_capacity(1 << BUCKET_BITS);
+    for bucket in 0..1 << BUCKET_BITS {
+        let (keys, others) = rest.split_at_mut(part(bucket).map(<[Key]>::len).sum());
+        buckets.push(keys);
+        rest = others;
+    }
+    buckets.into_par_iter().enumerate().for_each(|(bucket, keys)| {
+        let mut rest = &mut *keys;
+        for part in part(bucket) {
+            let (place, others) = rest.split_at_mut(part.len());
+            place.copy_from_slice(part);
+            rest = others;
+        }
+        keys.sort_unstable();
+    });
+    keys
+}
+
+/// The parts of a node's keys that its children are over.
+struct Parts {
+    count: usize,
+    /// Where each begins, and where the last ends.
+    starts: [usize; WIDTH + 1],
+    /// How many keys each has to divide: none if it is a leaf.
+    open: [usize; WIDTH],
+    /// Whether the curve of each is its own.
+    is_redrawn: [bool; WIDTH],
+}
+
+impl Parts {
+    /// One of all, to be told how much there is to divide.
+    fn new(keys: usize, is_redrawn: bool) -> Self {
+        let mut parts = Self {
+            count: 1,
+            starts: [0; WIDTH + 1],
+            open: [0; WIDTH],
+            is_redrawn: [is_redrawn; WIDTH],
+        };
+        parts.starts[1] = keys;
+        parts
+    }
+
+    /// The one that has most to divide, if any has.
+    fn largest(&self) -> Option<usize> {
+        let larger = |a, b| if self.open[b] > self.open[a] { b } else { a };
+        let largest = (1..WIDTH).fold(0, larger);
+        (self.open[largest] > 0).then_some(largest)
+    }
+
+    /// Where one is.
+    fn range(&self, part: usize) -> Range<usize> {
+        self.starts[part]..self.starts[part + 1]
+    }
+
+    /// Makes two of one.
+    fn split(&mut self, part: usize, middle: usize, open: [usize; 2]) {
+        self.starts.copy_within(part + 1..=self.count, part + 2);
+        self.open.copy_within(part + 1..self.count, part + 2);
+        self.is_redrawn.copy_within(part..self.count, part + 1);
+        self.starts[part + 1] = middle;
+        [self.open[part], self.open[part + 1]] = open;
+        self.count += 1;
+    }
+}
+
+struct Builder<'a, P> {
+    primitives: &'a P,
+    census: Census,
+    format: Format,
+}
+
+impl<P: Primitives> Builder<'_, P> {
+    /// How many keys there are to divide: none in a leaf.
+    fn open(&self, keys: &[Key]) -> usize {
+        let is_triangle = |&key: &Key| self.format.index(key) < self.census.triangles;
+        let is_leaf = keys.len() <= 1 || (keys.len() <= LANES && keys.iter().all(is_triangle));
+        if is_leaf { 0 } else { keys.len() }
+    }
+
+    /// Adds a node over keys, of which the first is at a place among all, and what is below it.
+    fn node(&self, keys: &mut [Key], first: usize, is_redrawn: bool, topology: &mut Topology) {
+        let node = topology.add_node();
+        let mut parts = Parts::new(keys.len(), is_redrawn);
+        parts.open[0] = self.open(keys);
+        while parts.count < WIDTH
+            && let Some(part) = parts.largest()
+        {
+            let Range { start, end } = parts.range(part);
+            let middle = start + self.divide(&mut keys[start..end], &mut parts.is_redrawn[part]);
+            let open = [self.open(&keys[start..middle]), self.open(&keys[middle..end])];
+            parts.split(part, middle, open);
+        }
+        let is_parallel = keys.len() > CHUNK;
+        let mut below = Vec::new();
+        let mut rest = keys;
+        for slot in 0..parts.count {
+            let range = parts.range(slot);
+            let (keys, others) = rest.split_at_mut(range.len());
+            rest = others;
+            let first = first + range.start;
+            let is_redrawn = parts.is_redrawn[slot];
+            if parts.open[slot] == 0 {
+                topology.nodes[node][slot] = self.leaf(keys, first, topology);
+            } else if is_parallel {
+                below.push((slot, (keys, first, is_redrawn)));
+            } else {
+                topology.nodes[node][slot] = ChildRef::new(Child::Node(topology.nodes.len()));
+                self.node(keys, first, is_redrawn, topology);
+            }
+        }
+        topology.append_all(node, below, |(keys, first, is_redrawn), tree| {
+            tree.reserve(keys.len());
+            self.node(keys, first, is_redrawn, tree);
+        });
+    }
+
+    fn leaf(&self, keys: &[Key], first: usize, topology: &mut Topology) -> ChildRef {
+        let index = self.format.index(keys[0]);
+        if index < self.census.triangles {
+            topology.add_block(Leaf {
+                first: first as u32,
+                count: keys.len() as u32,
+            })
+        } else {
+            self.census.child(index)
+        }
+    }
+
+    /// Where codes first differ; if two leaves do, the first place where these have room.
+    fn divide(&self, keys: &mut [Key], is_redrawn: &mut bool) -> usize {
+        let differing = |keys: &[Key], places: [usize; 2]| {
+            let [a, b] = places.map(|place| self.format.code(keys[place]));
+            a ^ b
+        };
+        if keys.len() <= 2 * LANES && keys.len() > LANES {
+            let places = keys.len() - LANES..=LANES;
+            return places
+                .max_by_key(|&place| differing(keys, [place - 1, place]))
+                .unwrap_or(LANES);
+        }
+        let ends = [0, keys.len() - 1];
+        if differing(keys, ends) == 0 && !*is_redrawn {
+            let indices = keys.par_iter().map(|&key| self.format.index(key));
+            let centers = indices
+                .with_min_len(CHUNK)
+                .fold(
+                    || Box4::EMPTY,
+                    |box4, index| box4.grow(Box4::within_reach(&self.primitives.bounds(index)).twice_center() * 0.5),
+                )
+                .reduce(|| Box4::EMPTY, Box4::union);
+            let curve = Curve::through(centers, self.format);
+            for key in &mut *keys {
+                *key = curve.key(self.format.index(*key), self.primitives);
+            }
+            keys.sort_unstable();
+            *is_redrawn = true;
+        }
+        let differing = differing(keys, ends);
+        if differing == 0 {
+            return keys.len() / 2;
+        }
+        // All codes from the first with the highest bit in which they differ.
+        let bit = 63 - differing.leading_zeros();
+        let border = self.format.code(keys[keys.len() - 1]) >> bit << bit;
+        keys.partition_point(|&key| self.format.code(key) < border)
+    }
+}
