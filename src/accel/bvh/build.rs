@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::bins::{self, Split};
 use super::item::{Box4, Extent, Item};
 use super::leaf::LANES;
+use super::pages::vec_in_large_pages;
 use super::primitives::Primitives;
 use super::spatial::{self, Plane};
 
@@ -81,7 +82,7 @@ pub fn build(primitives: &impl Primitives, params: BuildParams) -> Built {
     } else {
         0
     };
-    let mut items = Vec::with_capacity(count + room);
+    let mut items = vec_in_large_pages(count + room);
     (0..count as u32)
         .into_par_iter()
         .map(|index| Item::new(&primitives.bounds(index), index))

@@ -109,38 +109,62 @@ pub struct Item {
     high: Vec4,
 }
 
-/// Bits of a name in a lane: below the exponent of a number of usual size, as some processors are slow with the smallest.
-const NAME_BITS: u32 = 23;
+/// Bits of a name in the first lane: as many as leave a number of usual size, as some processors are slow with the smallest. The others are
+/// in the second lane.
+const LOW_BITS: u32 = 23;
 
-/// A number from 1 to 2 whose last bits are some of a name.
-fn named(bits: u32) -> f32 {
-    f32::from_bits(0x3f80_0000 | bits)
-}
+/// The number 1, to whose last bits a name is added.
+const ONE: u32 = 0x3f80_0000;
+
+/// In the second lane, that the item is a fragment.
+const IS_FRAGMENT: u32 = 1 << 22;
 
 impl Item {
     /// What `index` names to the caller, in a box.
     #[inline]
     pub fn new(bounds: &Bounds3, index: u32) -> Self {
-        Self::with_box(&Box4::within_reach(bounds), index)
+        let [low, high] = [index & ((1 << LOW_BITS) - 1), index >> LOW_BITS];
+        Self::with_lanes(
+            &Box4::within_reach(bounds),
+            f32::from_bits(ONE | low),
+            f32::from_bits(ONE | high),
+        )
     }
 
-    /// The same.
     #[inline]
-    pub fn with_box(bounds: &Box4, index: u32) -> Self {
+    fn with_lanes(bounds: &Box4, low: f32, high: f32) -> Self {
         let mut item = Self {
             low: bounds.low,
             high: bounds.high,
         };
-        item.low.w = named(index & ((1 << NAME_BITS) - 1));
-        item.high.w = named(index >> NAME_BITS);
+        (item.low.w, item.high.w) = (low, high);
         item
+    }
+
+    /// A fragment of it.
+    pub fn fragment(&self, bounds: &Box4) -> Self {
+        let high = f32::from_bits(self.high.w.to_bits() | IS_FRAGMENT);
+        Self::with_lanes(bounds, self.low.w, high)
+    }
+
+    /// Whether it is one.
+    #[inline]
+    pub fn is_fragment(&self) -> bool {
+        self.high.w.to_bits() & IS_FRAGMENT != 0
     }
 
     /// What it is, to the caller.
     #[inline]
     pub fn index(&self) -> u32 {
-        let [low, high] = [self.low, self.high].map(|corner| corner.w.to_bits() & ((1 << NAME_BITS) - 1));
-        low | high << NAME_BITS
+        let [low, high] = [self.low, self.high].map(|corner| corner.w.to_bits() & !ONE);
+        low | (high & !IS_FRAGMENT) << LOW_BITS
+    }
+
+    /// The box that it was made in, if that is known: nothing of it was cut off.
+    pub fn whole(&self) -> Option<Bounds3> {
+        let bounds = self.box4().bounds();
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        (!self.is_fragment() && reach < FARTHEST).then_some(bounds)
     }
 
     /// Its box.

@@ -13,6 +13,7 @@ use super::build::Leaf;
 use super::item::Box4;
 use super::leaf::LANES;
 use super::node::{Child, ChildRef, WIDTH};
+use super::pages::vec_in_large_pages;
 use super::primitives::{Census, Primitives};
 use super::topology::Topology;
 use crate::math::Vec3;
@@ -66,7 +67,10 @@ pub fn build(primitives: &impl Primitives) -> (Topology, Vec<u32>) {
     };
     let mut topology = Topology::default();
     builder.node(&mut keys, 0, false, &mut topology);
-    let order = keys.par_iter().map(|&key| format.index(key)).collect();
+    let mut order = vec_in_large_pages(keys.len());
+    keys.par_iter()
+        .map(|&key| format.index(key))
+        .collect_into_vec(&mut order);
     (topology, order)
 }
 
@@ -170,7 +174,8 @@ fn sorted(count: u32, format: Format, key: impl Fn(u32) -> Key + Sync) -> Vec<Ke
             &keys[first as usize..ends[bucket] as usize]
         })
     };
-    let mut keys = vec![0; count as usize];
+    let mut keys = vec_in_large_pages(count as usize);
+    keys.resize(count as usize, 0);
     let mut rest = keys.as_mut_slice();
     let mut buckets = Vec::with_capacity(1 << BUCKET_BITS);
     for bucket in 0..1 << BUCKET_BITS {

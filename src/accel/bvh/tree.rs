@@ -133,9 +133,11 @@ impl Shape {
         let topology = collapse(&tree, &analytic);
         drop(tree);
         let boxes = params.splits.then(|| {
-            let of_item = |item: &Item| match primitives.corners(item.index()) {
-                Some(corners) => fragment_bounds(&item.box4().bounds(), corners),
-                None => primitives.bounds(item.index()),
+            let of_item = |item: &Item| {
+                item.whole().unwrap_or_else(|| match primitives.corners(item.index()) {
+                    Some(corners) if item.is_fragment() => fragment_bounds(&item.box4().bounds(), corners),
+                    _ => primitives.bounds(item.index()),
+                })
             };
             let of_leaf = |leaf: &Leaf| {
                 let boxes = items[leaf.range()].iter().map(of_item);
@@ -172,7 +174,8 @@ impl Shape {
         };
         let leaves = self.topology.blocks.par_iter().with_min_len(256);
         let mut blocks = vec_in_large_pages(leaves.len());
-        let mut bounds = vec![B::NOTHING; leaves.len()];
+        let mut bounds = vec_in_large_pages(leaves.len());
+        bounds.resize(leaves.len(), B::NOTHING);
         leaves.zip(&mut bounds).map(block).collect_into_vec(&mut blocks);
         (blocks, bounds)
     }
@@ -182,9 +185,6 @@ impl Shape {
 /// coordinates, which nodes know of whole triangles only.
 fn fragment_bounds(fragment: &Bounds3, corners: [Vec3; 3]) -> Bounds3 {
     let whole = Bounds3::from_points(corners);
-    if *fragment == whole {
-        return whole;
-    }
     let size = whole.min.abs().max(whole.max.abs());
     let margin = 2.0 * MARGIN * (size + Vec3::splat(size.max_element()));
     Bounds3 {
