@@ -38,7 +38,7 @@ fn load(name: &str, backend: Backend) -> (Scene, View, Integrator) {
         .with_extension("pbrt");
     let desc = desc::load(&path, &ParseOptions::default()).expect("the project's own scene");
     let options = SceneOptions {
-        backend,
+        backend: Some(backend),
         build: BuildOptions::default(),
         ..SceneOptions::default()
     };

@@ -16,7 +16,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::geometry::{GeometryId, HitPacket, InstanceId, PrimitiveId, RayPacket, World};
+use crate::geometry::{Geometry, GeometryId, HitPacket, InstanceId, PrimitiveId, RayPacket, World};
 
 /// What rays are for, which says how coherent a packet of them is. A backend serves each kind by its best entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -123,6 +123,21 @@ impl Backend {
         Self::Embree,
         Self::Bvh,
     ];
+
+    /// The one for a world if nobody asks for another: our BVH from [`Backend::MANY`] primitives on, where it needs less memory to
+    /// build and on average traces faster, unless there are instances, which are slower in it, or what only Embree has is asked for; else the default.
+    pub fn for_world(world: &World, options: &BuildOptions) -> Self {
+        let primitives: usize = world.geometries().iter().map(Geometry::primitive_count).sum();
+        let wants_embree = options.compact || !options.robust;
+        if primitives >= Self::MANY && world.instances().is_empty() && !wants_embree {
+            Self::Bvh
+        } else {
+            Self::default()
+        }
+    }
+
+    /// See [`Backend::for_world`].
+    pub const MANY: usize = 1_000_000;
 }
 
 impl Default for Backend {

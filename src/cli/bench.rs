@@ -163,7 +163,7 @@ fn scene_case(path: &Path, args: &BenchArgs, saved: Option<&Path>) -> Result<Cas
     }
     .warnings(&desc.warnings);
     let options = SceneOptions {
-        backend: Backend::default(),
+        backend: Some(Backend::default()),
         build: build_options(),
         ..SceneOptions::default()
     };

@@ -13,7 +13,7 @@ use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
 use super::textures::TextureCompiler;
 use super::{Scene, SceneOptions, Surface};
-use crate::accel;
+use crate::accel::{self, Backend};
 use crate::desc::{AreaLightDesc, LightSamplerKind, SceneDesc, ShapeDesc};
 use crate::error::{Diagnostic, Error, Result, Severity, Span};
 use crate::geometry::{Geometry, GeometryId, Group, Instance, Opacity, WorldBuilder};
@@ -92,7 +92,10 @@ impl Scene {
         let world = Arc::new(builder.world.build()?);
         let bounds = world.bounds();
         let start = Instant::now();
-        let accel = Arc::from(accel::build(options.backend, &world, &options.build)?);
+        let backend = options
+            .backend
+            .unwrap_or_else(|| Backend::for_world(&world, &options.build));
+        let accel = Arc::from(accel::build(backend, &world, &options.build)?);
         let build_seconds = start.elapsed().as_secs_f64();
         let emission_sampler = LightSampler::power(&builder.lights.lights, &bounds);
         let in_media: &[Light] = if media.is_empty() { &[] } else { &builder.lights.lights };

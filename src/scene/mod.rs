@@ -31,8 +31,8 @@ pub use view::{View, ViewOverrides};
 /// How to build a [`Scene`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SceneOptions {
-    /// Who answers ray queries.
-    pub backend: Backend,
+    /// Who answers ray queries; by default the [one for the world](Backend::for_world).
+    pub backend: Option<Backend>,
     /// How its structures are built.
     pub build: BuildOptions,
     /// Whether transport is spectral or rgb.

@@ -6,7 +6,7 @@ use lucerna::accel::brute::Brute;
 use lucerna::accel::bvh::Bvh;
 use lucerna::accel::{Accel, Backend, BuildOptions, BuildQuality, RayKind};
 use lucerna::geometry::{
-    Geometry, Group, HitPacket, Instance, LANES, Ray, RayPacket, RayQueue, Shape, World, WorldBuilder,
+    Geometry, Group, HitPacket, Instance, LANES, Ray, RayPacket, RayQueue, Shape, TriangleMesh, World, WorldBuilder,
 };
 use lucerna::math::{AnimatedTransform, DAffine3, DVec3, Vec3};
 
@@ -309,5 +309,46 @@ fn a_tree_does_not_depend_on_threads_and_its_quality_changes_no_answer() {
     let answers = intersect(&reference, &rays, None);
     for quality in [BuildQuality::Low, BuildQuality::High] {
         assert_eq!(answers, intersect(&build(2, quality), &rays, None), "{quality:?}");
+    }
+}
+
+#[test]
+fn large_worlds_without_instances_are_for_our_bvh_unless_embree_alone_can_do_what_is_asked() {
+    let world = |triangles: usize, instances: usize| {
+        let positions = vec![vec![Vec3::ZERO, Vec3::X, Vec3::Y]];
+        let mesh = TriangleMesh::new(positions, vec![[0, 1, 2]; triangles]).expect("indices are of vertices");
+        let mut builder = WorldBuilder::default();
+        let geometry = builder.add_geometry(Geometry::opaque(Shape::Mesh(mesh)));
+        if instances == 0 {
+            builder.root.geometries.push(geometry);
+        } else {
+            let group = builder.add_group(Group {
+                geometries: vec![geometry],
+                instances: Vec::new(),
+            });
+            builder.root.instances = vec![
+                Instance {
+                    group,
+                    world_from_object: AnimatedTransform::fixed(DAffine3::IDENTITY).expect("it has an inverse"),
+                    mask: u32::MAX,
+                };
+                instances
+            ];
+        }
+        builder.build().expect("a world")
+    };
+    let usual = BuildOptions::default();
+    let large = world(Backend::MANY, 0);
+    assert_eq!(Backend::for_world(&large, &usual), Backend::Bvh);
+    assert_eq!(
+        Backend::for_world(&world(Backend::MANY - 1, 0), &usual),
+        Backend::default()
+    );
+    assert_eq!(Backend::for_world(&world(Backend::MANY, 2), &usual), Backend::default());
+    for options in [
+        BuildOptions { compact: true, ..usual },
+        BuildOptions { robust: false, ..usual },
+    ] {
+        assert_eq!(Backend::for_world(&large, &options), Backend::default());
     }
 }

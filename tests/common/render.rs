@@ -45,7 +45,7 @@ pub fn parse(text: &str) -> SceneDesc {
 
 fn options(backend: Backend, color: ColorMode) -> SceneOptions {
     SceneOptions {
-        backend,
+        backend: Some(backend),
         color,
         ..SceneOptions::default()
     }

@@ -109,9 +109,11 @@ struct Builder<'a, P> {
 
 /// Where a range of items is among all, and how deep in the tree.
 #[derive(Clone, Copy)]
-struct Place {
-    first: usize,
-    level: u32,
+pub struct Place {
+    /// Where it begins.
+    pub first: usize,
+    /// Levels above it.
+    pub level: u32,
 }
 
 /// Items divided: those of the lower side are first in the range, those of the other at its end, and both have room behind them.
@@ -285,8 +287,8 @@ fn halve(items: &mut [Item], extent: &Extent) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::bvh::primitives::Census;
-    use crate::math::{Bounds3, Vec3};
+    use crate::accel::bvh::primitives::tests::Boxes;
+    use crate::math::Vec3;
 
     fn levels(tree: &[BinaryNode], root: usize) -> u32 {
         match tree[root] {
@@ -295,33 +297,9 @@ mod tests {
         }
     }
 
-    struct Boxes(Vec<Bounds3>);
-
-    impl Primitives for Boxes {
-        fn census(&self) -> Census {
-            Census {
-                triangles: self.0.len() as u32,
-                analytic: 0,
-                instances: 0,
-            }
-        }
-
-        fn bounds(&self, index: u32) -> Bounds3 {
-            self.0[index as usize]
-        }
-
-        fn bounds_of_all(&self) -> Bounds3 {
-            self.0.iter().copied().fold(Bounds3::EMPTY, Bounds3::union)
-        }
-
-        fn corners(&self, _index: u32) -> Option<[Vec3; 3]> {
-            None
-        }
-    }
-
     fn check(boxes: impl IntoIterator<Item = [Vec3; 2]>) {
-        let boxes = Boxes(boxes.into_iter().map(|[min, max]| Bounds3 { min, max }).collect());
-        let count = boxes.0.len();
+        let boxes = Boxes::new(boxes);
+        let count = boxes.census().count();
         let params = BuildParams {
             bins: 16,
             splits: false,

@@ -22,7 +22,7 @@ impl Corners {
         Self([[[0.0; LANES]; 3]; 3])
     }
 
-    #[inline]
+    #[inline(always)]
     fn set(&mut self, lane: usize, mesh: &TriangleMesh, triangle: usize, step: usize) {
         let positions = mesh.positions(step);
         for (corner, &vertex) in self.0.iter_mut().zip(&mesh.indices()[triangle]) {
@@ -40,6 +40,7 @@ impl Corners {
     }
 
     /// A box around the first of the triangles.
+    #[inline(always)]
     fn bounds(&self, triangles: usize) -> Bounds3 {
         let mut bounds = Bounds3::EMPTY;
         for [x, y, z] in &self.0 {
@@ -83,6 +84,7 @@ pub struct BlockIds {
 }
 
 impl BlockIds {
+    #[inline(always)]
     fn new(world: &World, triangles: &[Triangle<'_>]) -> Self {
         let mut ids = Self {
             mask: [0; LANES],
@@ -149,6 +151,7 @@ impl Block for FixedBlock {
 
     const NOTHING: Bounds3 = Bounds3::EMPTY;
 
+    #[inline(always)]
     fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
         Self {
             corners: gather(triangles, step),
@@ -156,6 +159,7 @@ impl Block for FixedBlock {
         }
     }
 
+    #[inline(always)]
     fn bounds(&self, triangles: usize) -> Bounds3 {
         self.corners.bounds(triangles)
     }
@@ -177,6 +181,7 @@ impl Block for MovingBlock {
 
     const NOTHING: [Bounds3; 2] = [Bounds3::EMPTY; 2];
 
+    #[inline(always)]
     fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
         Self {
             start: gather(triangles, step),

@@ -1,7 +1,7 @@
 //! A tree in the least time: a linear BVH (Lauterbach et al. 2009, "Fast BVH Construction on GPUs") of eight children a node.
 //!
-//! Primitives are sorted along a Morton curve. A node's part of the curve is divided where the codes first differ, then the largest of its
-//! parts, until there are eight. Where all codes are the same the curve is drawn anew through the box of what is there, and where they
+//! Primitives are sorted along a Morton curve. A node's part of the curve is divided where the codes first differ, then that of its parts which
+//! has the largest cell, until there are eight. Where all codes are the same the curve is drawn anew through the box of what is there, and where they
 //! still are, by number. The tree is a function of the primitives alone.
 
 use std::ops::Range;
@@ -9,7 +9,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::bins::TO_INTEGER;
-use super::build::Leaf;
+use super::build::{Leaf, MOST_LEVELS, Place};
 use super::item::Box4;
 use super::leaf::LANES;
 use super::node::{Child, ChildRef, WIDTH};
@@ -66,7 +66,7 @@ pub fn build(primitives: &impl Primitives) -> (Topology, Vec<u32>) {
         format,
     };
     let mut topology = Topology::default();
-    builder.node(&mut keys, 0, false, &mut topology);
+    builder.node(&mut keys, Place { first: 0, level: 0 }, Division::Curve, &mut topology);
     let mut order = vec_in_large_pages(keys.len());
     keys.par_iter()
         .map(|&key| format.index(key))
@@ -100,7 +100,8 @@ impl Curve {
     fn key(&self, index: u32, primitives: &impl Primitives) -> Key {
         let bounds = primitives.bounds(index);
         let cell = (bounds.min + bounds.max - self.low) * self.scale + TO_INTEGER;
-        let [x, y, z] = cell.to_array().map(|x| spread(x.to_bits()));
+        let mask = (1 << self.format.cell_bits) - 1;
+        let [x, y, z] = cell.to_array().map(|x| spread(x.to_bits() & mask));
         let code = x | y << 1 | z << 2;
         code << self.format.index_bits | Key::from(index)
     }
@@ -195,35 +196,49 @@ fn sorted(count: u32, format: Format, key: impl Fn(u32) -> Key + Sync) -> Vec<Ke
     keys
 }
 
+/// How keys are divided.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Division {
+    /// By the curve through all.
+    Curve,
+    /// By one through them alone.
+    OwnCurve,
+    /// In halves.
+    Number,
+}
+
+/// Levels of nodes after which keys are divided in halves, which needs no more than eleven.
+const MOST_CURVED: u32 = MOST_LEVELS - 16;
+
 /// The parts of a node's keys that its children are over.
 struct Parts {
     count: usize,
     /// Where each begins, and where the last ends.
     starts: [usize; WIDTH + 1],
-    /// How many keys each has to divide: none if it is a leaf.
-    open: [usize; WIDTH],
-    /// Whether the curve of each is its own.
-    is_redrawn: [bool; WIDTH],
+    /// How soon each is to be divided; 0 if it is a leaf.
+    urgency: [u64; WIDTH],
+    division: [Division; WIDTH],
 }
 
 impl Parts {
-    /// One of all, to be told how much there is to divide.
-    fn new(keys: usize, is_redrawn: bool) -> Self {
+    /// One of all.
+    fn new(keys: usize, urgency: u64, division: Division) -> Self {
         let mut parts = Self {
             count: 1,
             starts: [0; WIDTH + 1],
-            open: [0; WIDTH],
-            is_redrawn: [is_redrawn; WIDTH],
+            urgency: [0; WIDTH],
+            division: [division; WIDTH],
         };
         parts.starts[1] = keys;
+        parts.urgency[0] = urgency;
         parts
     }
 
-    /// The one that has most to divide, if any has.
-    fn largest(&self) -> Option<usize> {
-        let larger = |a, b| if self.open[b] > self.open[a] { b } else { a };
-        let largest = (1..WIDTH).fold(0, larger);
-        (self.open[largest] > 0).then_some(largest)
+    /// The one that is to be divided next, if any is.
+    fn next(&self) -> Option<usize> {
+        let sooner = |a, b| if self.urgency[b] > self.urgency[a] { b } else { a };
+        let next = (1..WIDTH).fold(0, sooner);
+        (self.urgency[next] > 0).then_some(next)
     }
 
     /// Where one is.
@@ -232,12 +247,12 @@ impl Parts {
     }
 
     /// Makes two of one.
-    fn split(&mut self, part: usize, middle: usize, open: [usize; 2]) {
+    fn split(&mut self, part: usize, middle: usize, urgencies: [u64; 2]) {
         self.starts.copy_within(part + 1..=self.count, part + 2);
-        self.open.copy_within(part + 1..self.count, part + 2);
-        self.is_redrawn.copy_within(part..self.count, part + 1);
+        self.urgency.copy_within(part + 1..self.count, part + 2);
+        self.division.copy_within(part..self.count, part + 1);
         self.starts[part + 1] = middle;
-        [self.open[part], self.open[part + 1]] = open;
+        [self.urgency[part], self.urgency[part + 1]] = urgencies;
         self.count += 1;
     }
 }
@@ -249,25 +264,36 @@ struct Builder<'a, P> {
 }
 
 impl<P: Primitives> Builder<'_, P> {
-    /// How many keys there are to divide: none in a leaf.
-    fn open(&self, keys: &[Key]) -> usize {
+    /// How soon keys are to be divided: those in the largest cell first, the most first of these; 0 if they are a leaf.
+    fn urgency(&self, keys: &[Key], division: Division) -> u64 {
         let is_triangle = |&key: &Key| self.format.index(key) < self.census.triangles;
-        let is_leaf = keys.len() <= 1 || (keys.len() <= LANES && keys.iter().all(is_triangle));
-        if is_leaf { 0 } else { keys.len() }
+        if keys.len() <= 1 || (keys.len() <= LANES && keys.iter().all(is_triangle)) {
+            return 0;
+        }
+        let differing = match division {
+            Division::Curve | Division::OwnCurve => keys[0] ^ keys[keys.len() - 1],
+            Division::Number => 0,
+        };
+        u64::from(Key::BITS - differing.leading_zeros()) << 32 | keys.len() as u64
     }
 
     /// Adds a node over keys, of which the first is at a place among all, and what is below it.
-    fn node(&self, keys: &mut [Key], first: usize, is_redrawn: bool, topology: &mut Topology) {
+    fn node(&self, keys: &mut [Key], place: Place, division: Division, topology: &mut Topology) {
         let node = topology.add_node();
-        let mut parts = Parts::new(keys.len(), is_redrawn);
-        parts.open[0] = self.open(keys);
+        let division = if place.level < MOST_CURVED {
+            division
+        } else {
+            Division::Number
+        };
+        let mut parts = Parts::new(keys.len(), self.urgency(keys, division), division);
         while parts.count < WIDTH
-            && let Some(part) = parts.largest()
+            && let Some(part) = parts.next()
         {
             let Range { start, end } = parts.range(part);
-            let middle = start + self.divide(&mut keys[start..end], &mut parts.is_redrawn[part]);
-            let open = [self.open(&keys[start..middle]), self.open(&keys[middle..end])];
-            parts.split(part, middle, open);
+            let middle = start + self.divide(&mut keys[start..end], &mut parts.division[part]);
+            let division = parts.division[part];
+            let urgencies = [start..middle, middle..end].map(|part| self.urgency(&keys[part], division));
+            parts.split(part, middle, urgencies);
         }
         let is_parallel = keys.len() > CHUNK;
         let mut below = Vec::new();
@@ -276,20 +302,23 @@ impl<P: Primitives> Builder<'_, P> {
             let range = parts.range(slot);
             let (keys, others) = rest.split_at_mut(range.len());
             rest = others;
-            let first = first + range.start;
-            let is_redrawn = parts.is_redrawn[slot];
-            if parts.open[slot] == 0 {
-                topology.nodes[node][slot] = self.leaf(keys, first, topology);
+            let place = Place {
+                first: place.first + range.start,
+                level: place.level + 1,
+            };
+            let division = parts.division[slot];
+            if parts.urgency[slot] == 0 {
+                topology.nodes[node][slot] = self.leaf(keys, place.first, topology);
             } else if is_parallel {
-                below.push((slot, (keys, first, is_redrawn)));
+                below.push((slot, (keys, place, division)));
             } else {
                 topology.nodes[node][slot] = ChildRef::new(Child::Node(topology.nodes.len()));
-                self.node(keys, first, is_redrawn, topology);
+                self.node(keys, place, division, topology);
             }
         }
-        topology.append_all(node, below, |(keys, first, is_redrawn), tree| {
+        topology.append_all(node, below, |(keys, place, division), tree| {
             tree.reserve(keys.len());
-            self.node(keys, first, is_redrawn, tree);
+            self.node(keys, place, division, tree);
         });
     }
 
@@ -306,41 +335,102 @@ impl<P: Primitives> Builder<'_, P> {
     }
 
     /// Where codes first differ; if two leaves do, the first place where these have room.
-    fn divide(&self, keys: &mut [Key], is_redrawn: &mut bool) -> usize {
+    fn divide(&self, keys: &mut [Key], division: &mut Division) -> usize {
         let differing = |keys: &[Key], places: [usize; 2]| {
             let [a, b] = places.map(|place| self.format.code(keys[place]));
             a ^ b
         };
-        if keys.len() <= 2 * LANES && keys.len() > LANES {
+        if keys.len() > LANES && keys.len() <= 2 * LANES {
             let places = keys.len() - LANES..=LANES;
-            return places
-                .max_by_key(|&place| differing(keys, [place - 1, place]))
-                .unwrap_or(LANES);
+            let middle = places.max_by_key(|&place| differing(keys, [place - 1, place]));
+            return middle.unwrap_or(LANES);
         }
         let ends = [0, keys.len() - 1];
-        if differing(keys, ends) == 0 && !*is_redrawn {
-            let indices = keys.par_iter().map(|&key| self.format.index(key));
-            let centers = indices
-                .with_min_len(CHUNK)
-                .fold(
-                    || Box4::EMPTY,
-                    |box4, index| box4.grow(Box4::within_reach(&self.primitives.bounds(index)).twice_center() * 0.5),
-                )
-                .reduce(|| Box4::EMPTY, Box4::union);
-            let curve = Curve::through(centers, self.format);
-            for key in &mut *keys {
-                *key = curve.key(self.format.index(*key), self.primitives);
-            }
-            keys.sort_unstable();
-            *is_redrawn = true;
+        if *division == Division::Curve && differing(keys, ends) == 0 {
+            self.redraw(keys);
+            *division = Division::OwnCurve;
         }
         let differing = differing(keys, ends);
-        if differing == 0 {
+        if differing == 0 || *division == Division::Number {
             return keys.len() / 2;
         }
         // All codes from the first with the highest bit in which they differ.
         let bit = 63 - differing.leading_zeros();
         let border = self.format.code(keys[keys.len() - 1]) >> bit << bit;
         keys.partition_point(|&key| self.format.code(key) < border)
+    }
+
+    /// Sorts keys along a curve through the box of their centres.
+    fn redraw(&self, keys: &mut [Key]) {
+        let centers = keys.iter().fold(Box4::EMPTY, |centers, &key| {
+            let bounds = self.primitives.bounds(self.format.index(key));
+            centers.grow(Box4::within_reach(&bounds).twice_center() * 0.5)
+        });
+        let curve = Curve::through(centers, self.format);
+        for key in &mut *keys {
+            *key = curve.key(self.format.index(*key), self.primitives);
+        }
+        keys.sort_unstable();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::iter::repeat_n;
+
+    use super::*;
+    use crate::accel::bvh::primitives::tests::Boxes;
+
+    fn levels(topology: &Topology, node: usize) -> u32 {
+        let below = topology.nodes[node].iter().map(|child| match child.get() {
+            Child::Node(0) | Child::Block(_) | Child::Analytic(_) | Child::Instance(_) => 0,
+            Child::Node(index) => levels(topology, index),
+        });
+        1 + below.fold(0, u32::max)
+    }
+
+    /// Clusters of points, each a part of the size of the one before: nearly all cells of a curve are of one of them.
+    fn clusters(count: usize, shrink: f32, each: usize) -> Boxes {
+        let points = (0..count * each).map(|i| {
+            let (size, within) = (shrink.powi((i / each) as i32), (i % each) as f32 / each as f32);
+            let point = size * (Vec3::ONE + within * Vec3::new(0.5, -0.3, 0.7));
+            [point, point]
+        });
+        Boxes::new(points)
+    }
+
+    #[test]
+    fn trees_are_shallow_and_their_leaves_hold_all() {
+        let same = Boxes::new(repeat_n([Vec3::ZERO, Vec3::ONE], 100_000));
+        let infinite = Boxes::new(repeat_n([Vec3::NEG_INFINITY, Vec3::INFINITY], 1000));
+        let far = Boxes::new((0..40_000).map(|i| [Vec3::splat(i as f32 - 2e4), Vec3::splat(2.0_f32.powi(i % 120))]));
+        let few = Boxes::new(repeat_n([Vec3::ZERO, Vec3::ONE], 3));
+        for boxes in [
+            clusters(100, 0.5, 40),
+            clusters(60, 0.3, 9),
+            clusters(3000, 0.99, 12),
+            same,
+            infinite,
+            far,
+            few,
+        ] {
+            let (topology, order) = build(&boxes);
+            let levels = levels(&topology, 0);
+            assert!(levels <= MOST_LEVELS, "{levels} levels");
+            let mut found: Vec<u32> = topology
+                .blocks
+                .iter()
+                .flat_map(|leaf| &order[leaf.range()])
+                .copied()
+                .collect();
+            found.sort_unstable();
+            assert!(found.into_iter().eq(0..boxes.census().count() as u32));
+            assert!(
+                topology
+                    .blocks
+                    .iter()
+                    .all(|leaf| (1..=LANES as u32).contains(&leaf.count))
+            );
+        }
     }
 }

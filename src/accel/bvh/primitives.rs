@@ -239,3 +239,39 @@ impl Primitives for Moving<'_> {
         None
     }
 }
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// Boxes as if they were around triangles.
+    pub struct Boxes(Vec<Bounds3>);
+
+    impl Boxes {
+        pub fn new(boxes: impl IntoIterator<Item = [Vec3; 2]>) -> Self {
+            Self(boxes.into_iter().map(|[min, max]| Bounds3 { min, max }).collect())
+        }
+    }
+
+    impl Primitives for Boxes {
+        fn census(&self) -> Census {
+            Census {
+                triangles: number(self.0.len()),
+                analytic: 0,
+                instances: 0,
+            }
+        }
+
+        fn bounds(&self, index: u32) -> Bounds3 {
+            self.0[index as usize]
+        }
+
+        fn bounds_of_all(&self) -> Bounds3 {
+            self.0.iter().copied().fold(Bounds3::EMPTY, Bounds3::union)
+        }
+
+        fn corners(&self, _index: u32) -> Option<[Vec3; 3]> {
+            None
+        }
+    }
+}

@@ -99,24 +99,19 @@ struct Shape {
     topology: Topology,
     /// The names of what is in the leaves, where they say.
     order: Vec<u32>,
-    /// The boxes of the leaves of triangles, where they are not those of the triangles.
-    boxes: Option<Vec<Bounds3>>,
 }
 
 impl Shape {
-    /// Over primitives; `None` over nothing.
-    fn new(primitives: &impl Primitives, quality: BuildQuality) -> Option<Self> {
-        if primitives.census().count() == 0 {
+    /// Over primitives, with the items that it was made of, if it was, in the order of the leaves; `None` over nothing.
+    fn new(primitives: &impl Primitives, quality: BuildQuality) -> Option<(Self, Vec<Item>)> {
+        let census = primitives.census();
+        if census.count() == 0 {
             return None;
         }
         let params = match quality {
             BuildQuality::Low => {
                 let (topology, order) = linear::build(primitives);
-                return Some(Self {
-                    topology,
-                    order,
-                    boxes: None,
-                });
+                return Some((Self { topology, order }, Vec::new()));
             }
             BuildQuality::Medium => BuildParams {
                 bins: 16,
@@ -125,57 +120,75 @@ impl Shape {
             BuildQuality::High => BuildParams { bins: 32, splits: true },
         };
         let Built { tree, items } = build::build(primitives, params);
-        let census = primitives.census();
         let analytic = |leaf: Leaf| {
             let index = items[leaf.range().start].index();
             (index >= census.triangles).then(|| census.child(index))
         };
         let topology = collapse(&tree, &analytic);
-        drop(tree);
-        let boxes = params.splits.then(|| {
-            let of_item = |item: &Item| {
-                item.whole().unwrap_or_else(|| match primitives.corners(item.index()) {
-                    Some(corners) if item.is_fragment() => fragment_bounds(&item.box4().bounds(), corners),
-                    _ => primitives.bounds(item.index()),
-                })
-            };
-            let of_leaf = |leaf: &Leaf| {
-                let boxes = items[leaf.range()].iter().map(of_item);
-                boxes.fold(Bounds3::EMPTY, Bounds3::union)
-            };
-            topology.blocks.par_iter().with_min_len(256).map(of_leaf).collect()
-        });
-        Some(Self {
-            order: items.par_iter().map(Item::index).collect(),
-            topology,
-            boxes,
-        })
+        let order = items.par_iter().map(Item::index).collect();
+        Some((Self { topology, order }, items))
     }
 
-    /// The blocks of its leaves, and boxes around these.
-    fn blocks<B: Block>(&self, world: &World, triangles: &Triangles<'_>, step: usize) -> (Vec<B>, Vec<B::Bounds>) {
-        let block = |(leaf, bounds): (&Leaf, &mut B::Bounds)| {
-            let in_leaf = &self.order[leaf.range()];
-            let mut indices = [in_leaf[0]; LANES];
-            indices[..in_leaf.len()].copy_from_slice(in_leaf);
-            indices.sort_unstable();
-            // Fragments of one triangle may share a leaf.
-            let mut members = [triangles.find(indices[0]); LANES];
-            let mut count = 1;
-            for i in 1..LANES {
-                if indices[i] != indices[i - 1] {
-                    members[count] = triangles.find(indices[i]);
-                    count += 1;
-                }
-            }
-            let block = B::new(world, &members[..count], step);
-            *bounds = block.bounds(count);
-            block
+    /// Boxes around the leaves of triangles, by the items in them.
+    fn leaf_bounds(&self, items: &[Item], primitives: &impl Primitives) -> Vec<Bounds3> {
+        let of_item = |item: &Item| {
+            item.whole().unwrap_or_else(|| match primitives.corners(item.index()) {
+                Some(corners) if item.is_fragment() => fragment_bounds(&item.box4().bounds(), corners),
+                _ => primitives.bounds(item.index()),
+            })
         };
+        let of_leaf = |leaf: &Leaf| {
+            let boxes = items[leaf.range()].iter().map(of_item);
+            boxes.fold(Bounds3::EMPTY, Bounds3::union)
+        };
+        self.topology.blocks.par_iter().with_min_len(256).map(of_leaf).collect()
+    }
+
+    /// The block of a leaf, and how many triangles are in it.
+    #[inline(always)]
+    fn block<B: Block>(&self, leaf: &Leaf, world: &World, triangles: &Triangles<'_>, step: usize) -> (B, usize) {
+        let in_leaf = &self.order[leaf.range()];
+        let mut indices = [in_leaf[0]; LANES];
+        indices[..in_leaf.len()].copy_from_slice(in_leaf);
+        indices.sort_unstable();
+        // Fragments of one triangle may share a leaf.
+        let mut members = [triangles.find(indices[0]); LANES];
+        let mut count = 1;
+        for i in 1..LANES {
+            if indices[i] != indices[i - 1] {
+                members[count] = triangles.find(indices[i]);
+                count += 1;
+            }
+        }
+        (B::new(world, &members[..count], step), count)
+    }
+
+    /// The blocks of its leaves.
+    fn blocks<B: Block>(&self, world: &World, triangles: &Triangles<'_>) -> Vec<B> {
+        let leaves = self.topology.blocks.par_iter().with_min_len(256);
+        let mut blocks = vec_in_large_pages(leaves.len());
+        leaves
+            .map(|leaf| self.block(leaf, world, triangles, 0).0)
+            .collect_into_vec(&mut blocks);
+        blocks
+    }
+
+    /// The same from a time step on, and boxes around them.
+    fn blocks_and_bounds<B: Block>(
+        &self,
+        world: &World,
+        triangles: &Triangles<'_>,
+        step: usize,
+    ) -> (Vec<B>, Vec<B::Bounds>) {
         let leaves = self.topology.blocks.par_iter().with_min_len(256);
         let mut blocks = vec_in_large_pages(leaves.len());
         let mut bounds = vec_in_large_pages(leaves.len());
         bounds.resize(leaves.len(), B::NOTHING);
+        let block = |(leaf, bounds): (&Leaf, &mut B::Bounds)| {
+            let (block, count): (B, usize) = self.block(leaf, world, triangles, step);
+            *bounds = block.bounds(count);
+            block
+        };
         leaves.zip(&mut bounds).map(block).collect_into_vec(&mut blocks);
         (blocks, bounds)
     }
@@ -200,15 +213,22 @@ fn fixed_tree(
     quality: BuildQuality,
 ) -> Option<FixedTree> {
     let fixed = Fixed::new(world, members, instances);
-    let mut shape = Shape::new(&fixed, quality)?;
-    let (blocks, mut bounds) = shape.blocks(world, &fixed.triangles, 0);
-    if let Some(boxes) = shape.boxes.take() {
-        bounds = boxes;
-    }
-    let (nodes, bounds) = shape.topology.fit(|leaf| match leaf {
-        Child::Block(index) => bounds[index],
-        other => fixed.leaf_bounds(other),
-    });
+    let (shape, items) = Shape::new(&fixed, quality)?;
+    let fit = |topology: &Topology, blocks: &[Bounds3]| {
+        topology.fit(|leaf| match leaf {
+            Child::Block(index) => blocks[index],
+            other => fixed.leaf_bounds(other),
+        })
+    };
+    let ((nodes, bounds), blocks) = if items.is_empty() {
+        let (blocks, bounds) = shape.blocks_and_bounds(world, &fixed.triangles, 0);
+        (fit(&shape.topology, &bounds), blocks)
+    } else {
+        let nodes = fit(&shape.topology, &shape.leaf_bounds(&items, &fixed));
+        // Blocks are the most of a tree: what is done with makes room for them.
+        drop(items);
+        (nodes, shape.blocks(world, &fixed.triangles))
+    };
     Some(Tree {
         bounds,
         nodes,
@@ -247,13 +267,13 @@ fn segment_trees(world: &World, meshes: &[GeometryId], segments: usize, quality:
             triangles: &triangles,
             segment,
         };
-        Shape::new(&moving, quality)
+        Shape::new(&moving, quality).map(|(shape, _)| shape)
     };
     let shared = if quality == BuildQuality::High { None } else { shape(0) };
     let tree = |segment: usize| {
         let own = if shared.is_some() { None } else { shape(segment) };
         let shape = shared.as_ref().or(own.as_ref())?;
-        let (blocks, bounds) = shape.blocks::<MovingBlock>(world, &triangles, segment);
+        let (blocks, bounds) = shape.blocks_and_bounds::<MovingBlock>(world, &triangles, segment);
         let (nodes, [start, end]) = shape.topology.fit(|leaf| match leaf {
             Child::Block(index) => bounds[index],
             _ => MovingNode::NOTHING,

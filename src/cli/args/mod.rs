@@ -77,9 +77,12 @@ pub struct InfoArgs {
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
-    /// What answers ray queries: `embree` or `bvh`
-    #[arg(long, value_name = "NAME", default_value_t = Backend::default(), value_parser = parse_backend)]
-    pub backend: Backend,
+    /// What answers ray queries, `embree` or `bvh` [default: the one that is better for the scene]
+    ///
+    /// Without it Lucerna's own BVH answers where there are a million primitives or more, and no instances: there it takes less
+    /// memory, and on average less time. Embree answers elsewhere.
+    #[arg(long, value_name = "NAME", value_parser = parse_backend)]
+    pub backend: Option<Backend>,
 
     /// Let Embree build what takes least memory, and is slower; Lucerna's BVH has one form
     #[arg(long)]

@@ -80,7 +80,7 @@ impl Job<'_> {
     fn record(&self, prepared: &Prepared, view: &View, integrator: &Integrator) -> Result<Vec<Stream>> {
         let desc = &prepared.desc;
         let options = SceneOptions {
-            backend: Backend::default(),
+            backend: Some(Backend::default()),
             build: self.options(),
             color: self.args.color.into(),
         };

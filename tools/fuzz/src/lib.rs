@@ -69,7 +69,7 @@ pub fn scene(text: &[u8]) {
         return;
     }
     let options = SceneOptions {
-        backend: Backend::Bvh,
+        backend: Some(Backend::Bvh),
         ..SceneOptions::default()
     };
     show(Scene::build(&desc, &options));
