@@ -117,7 +117,7 @@ impl RayPacket {
     };
 
     /// Puts `ray` into `lane`.
-    #[inline]
+    #[inline(always)]
     pub fn set(&mut self, lane: usize, ray: &Ray) {
         [self.org_x[lane], self.org_y[lane], self.org_z[lane]] = ray.origin.to_array();
         [self.dir_x[lane], self.dir_y[lane], self.dir_z[lane]] = ray.direction.to_array();
@@ -177,7 +177,7 @@ pub struct RayQueue {
 
 impl RayQueue {
     /// Adds a ray.
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, ray: &Ray) {
         let (packet, lane) = (self.len / LANES, self.len % LANES);
         if lane == 0 {

@@ -5,8 +5,8 @@ use super::triangle::{self, Corners, rounding_error};
 use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
 use crate::math::{Kernel, LANES, Lanes, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 
-/// [`World::interaction`] of the lanes of a packet: the same bits, several times faster where they hit triangles in world space. Made
-/// once and filled again and again.
+/// The surfaces that the lanes of a packet hit: the bits of [`World::interaction`], several times faster where they hit triangles in
+/// world space. Made once and filled again and again.
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceLanes {
     vectorizer: Vectorizer,
@@ -50,9 +50,16 @@ pub struct Surfaces {
 }
 
 impl SurfaceLanes {
-    /// Computes what the rays that take part hit.
+    /// Computes what the rays that take part hit; `other` says it, for a ray, its hit and the distance there, of what is not a triangle in
+    /// world space.
     #[inline]
-    pub fn fill(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
+    pub fn fill(
+        &mut self,
+        world: &World,
+        rays: &RayPacket,
+        hits: &HitPacket,
+        other: impl Fn(&Ray, Hit, f32) -> SurfaceInteraction,
+    ) {
         let mut has_others = false;
         for lane in 0..LANES {
             let hit = hits.get(lane);
@@ -68,14 +75,19 @@ impl SurfaceLanes {
             self.surfaces = self.vectorizer.run(Compute { rays, triangles });
         }
         if has_others {
-            self.fill_others(world, rays, hits);
+            self.fill_others(rays, hits, other);
         }
     }
 
-    fn fill_others(&mut self, world: &World, rays: &RayPacket, hits: &HitPacket) {
+    fn fill_others(
+        &mut self,
+        rays: &RayPacket,
+        hits: &HitPacket,
+        other: impl Fn(&Ray, Hit, f32) -> SurfaceInteraction,
+    ) {
         for lane in 0..LANES {
             let hit = hits.get(lane).filter(|_| !self.is_triangle[lane]);
-            let surface = hit.map(|hit| world.interaction(&rays.get(lane), hit));
+            let surface = hit.map(|hit| other(&rays.get(lane), hit, hits.t[lane]));
             if let Some(surface) = &surface {
                 self.surfaces.set(lane, surface, rays.origin(lane));
             }
@@ -289,7 +301,7 @@ mod tests {
                     (hits.geometry[lane], hits.instance[lane]) = (1, 0);
                 }
             }
-            lanes.fill(&world, &rays, &hits);
+            lanes.fill(&world, &rays, &hits, |ray, hit, _| world.interaction(ray, hit));
             for lane in 0..LANES - 1 {
                 let (ray, hit) = (rays.get(lane), hits.get(lane).unwrap());
                 let (together, alone) = (lanes.get(lane, &ray, hit), world.interaction(&ray, hit));

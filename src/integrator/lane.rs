@@ -94,7 +94,7 @@ impl<S: Copy> Batch<S> {
     }
 
     /// Adds a path with a ray that is valid.
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, lane: &Lane<S>, ray: &Ray) {
         self.rays.push(ray);
         self.lanes.push(*lane);

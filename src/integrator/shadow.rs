@@ -61,7 +61,7 @@ impl<T> Default for ShadowQueue<T> {
 
 impl<T: Copy> ShadowQueue<T> {
     /// Adds a ray, which must be valid, and what it brings.
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, ray: &Ray, contribution: T) {
         self.rays.push(ray);
         self.contributions.push(contribution);

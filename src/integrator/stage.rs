@@ -146,7 +146,7 @@ pub(super) struct PacketVertices<'a, S> {
 }
 
 impl<S> PacketVertices<'_, S> {
-    /// The surface that a lane `hit`, unless its ray may have passed the front of it.
+    /// The surface that a lane `hit`.
     #[inline]
     pub fn surface(&self, lane: usize, hit: Hit) -> SurfaceInteraction {
         SurfaceInteraction {
@@ -155,7 +155,7 @@ impl<S> PacketVertices<'_, S> {
         }
     }
 
-    /// The cone of the ray from the surface on that a lane hit, unless its ray may have passed the front of it.
+    /// The cone of the ray from the surface on that a lane hit.
     #[inline]
     pub fn cone(&self, lane: usize) -> RayCone {
         self.lanes[lane].cone.after(self.surfaces.all().distance[lane])
@@ -211,7 +211,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
     }
 
     /// [`Self::go_on`] by a ray of which it is known whether it is valid.
-    #[inline]
+    #[inline(always)]
     pub fn go_on_if(&mut self, is_valid: bool, lane: &Lane<E::State>, ray: &Ray) {
         if !is_valid {
             self.slot(lane).broken = true;
@@ -245,7 +245,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
     }
 
     /// [`Self::add_unless_occluded`] by a ray of which it is known whether it is valid.
-    #[inline]
+    #[inline(always)]
     pub fn add_unless_occluded_if(&mut self, is_valid: bool, ray: &Ray, contribution: Contribution) {
         if is_valid {
             self.shadows.push(ray, contribution);

@@ -7,7 +7,7 @@ use super::coordinates::{Coordinates, sphere_uv};
 use super::emission::{sample_side, side_pdf};
 use super::emitter::{Emitter, EmitterShape, SamplePlace, SurfaceSample};
 use super::image::EmissionImage;
-use super::lanes::PlaneLight;
+use super::lanes::{PlainLight, PlainShape, PlaneLight, SphereLight};
 use super::moving::{MovingEmitter, sphere_shape};
 use super::{EmissionDensity, EmissionOrigin, EmissionSample, LightBounds, LightDensity, LightEnd, LightSample};
 use crate::desc::AreaSpread;
@@ -152,26 +152,34 @@ impl AreaLight {
         matches!(self.alpha, FloatTexture::Constant(alpha) if alpha <= 0.0)
     }
 
-    /// See [`PlaneLight`]; `None` if it is not one.
-    pub(super) fn plane(&self) -> Option<PlaneLight> {
+    /// See [`PlainLight`]; `None` if it is not one.
+    pub(super) fn plain(&self) -> Option<PlainLight> {
         let is_plain = matches!(self.radiance, Radiance::Constant(_))
             && matches!(self.alpha, FloatTexture::Constant(1.0))
             && self.spread == AreaSpread::Diffuse;
         if self.motion.is_some() || !is_plain {
             return None;
         }
-        let (is_triangle, vectors, ng) = match &self.emitter.shape {
-            EmitterShape::Triangle { vertices, ng } => (true, *vertices, *ng),
-            EmitterShape::Parallelogram { corner, edges, ng } => (false, [*corner, edges[0], edges[1]], *ng),
-            _ => return None,
+        let plane = |is_triangle: bool, vectors: [Vec3; 3], ng: Vec3| {
+            let (pdf, error) = self.emitter.plane_point_data();
+            PlainShape::Plane(PlaneLight {
+                is_triangle,
+                vectors,
+                ng,
+                error,
+                pdf,
+            })
         };
-        let (pdf, error) = self.emitter.plane_point_data();
-        Some(PlaneLight {
-            is_triangle,
-            vectors,
-            ng,
-            error,
-            pdf,
+        let shape = match self.emitter.shape {
+            EmitterShape::Triangle { vertices, ng } => plane(true, vertices, ng),
+            EmitterShape::Parallelogram { corner, edges, ng } => plane(false, [corner, edges[0], edges[1]], ng),
+            EmitterShape::Sphere { center, radius, inward } => {
+                PlainShape::Sphere(SphereLight { center, radius, inward })
+            }
+            EmitterShape::Ellipsoid(_) | EmitterShape::Quadric(_) | EmitterShape::Patch(_) => return None,
+        };
+        Some(PlainLight {
+            shape,
             two_sided: self.two_sided,
         })
     }

@@ -205,6 +205,7 @@ pub(super) fn plane_point(vectors: &[Vec3; 3], is_triangle: bool, u: Vec2) -> (V
 }
 
 /// A point that a backend sees off its place by `error`, and by rounding.
+#[inline(always)]
 fn surface_point<M>(p: DVec3, error: f64, ng: DVec3, pdf: M, at: SamplePlace) -> SurfaceSample<M> {
     let (p, ng) = (p.as_vec3(), ng.as_vec3());
     SurfaceSample {
@@ -217,8 +218,9 @@ fn surface_point<M>(p: DVec3, error: f64, ng: DVec3, pdf: M, at: SamplePlace) ->
 }
 
 /// The point of a sphere in the unit direction `outward` from its centre.
-fn sphere_point<M>(center: DVec3, radius: f64, inward: bool, outward: DVec3, pdf: M) -> SurfaceSample<M> {
-    let ng = if inward { -outward } else { outward };
+#[inline(always)]
+pub(super) fn sphere_point<M>(center: DVec3, radius: f64, inward: bool, outward: DVec3, pdf: M) -> SurfaceSample<M> {
+    let ng = outward * if inward { -1.0 } else { 1.0 };
     let at = SamplePlace::Sphere(outward);
     surface_point(center + outward * radius, LEAST_ERROR * radius, ng, pdf, at)
 }
@@ -343,36 +345,47 @@ fn ellipsoid_area(sphere: &Sphere) -> f32 {
 }
 
 /// The cone of directions in which a sphere is seen from a point outside.
-struct Cone {
+pub(super) struct Cone {
     /// Unit direction to the centre.
     axis: DVec3,
     /// Distance to the centre.
     distance: f64,
     /// 1 - cos of its half angle, without cancellation.
-    one_minus_cos: f32,
+    pub one_minus_cos: f32,
 }
 
 impl Cone {
-    /// `None` from inside the sphere, and from so near to it that `from`, rounded to single precision, may stand for a point
-    /// inside: on the sphere itself half of all points seem to be outside.
+    /// `None` where `from` is not [outside](Self::is_outside).
     fn towards(from: Vec3, center: DVec3, radius: f64) -> Option<Self> {
+        Self::is_outside(from, center, radius).then(|| Self::of(from, center, radius))
+    }
+
+    /// False inside the sphere, and so near to it that `from`, rounded to single precision, may stand for a point inside: on the
+    /// sphere itself half of all points seem to be outside.
+    #[inline(always)]
+    pub fn is_outside(from: Vec3, center: DVec3, radius: f64) -> bool {
+        let distance = (center - from.as_dvec3()).length();
+        let rounding = f64::from(gamma(1) * (from.x.abs() + from.y.abs() + from.z.abs()));
+        distance > radius + rounding
+    }
+
+    /// From outside.
+    #[inline(always)]
+    pub fn of(from: Vec3, center: DVec3, radius: f64) -> Self {
         let to_center = center - from.as_dvec3();
         let distance = to_center.length();
-        let rounding = f64::from(gamma(1) * (from.x.abs() + from.y.abs() + from.z.abs()));
-        if distance <= radius + rounding {
-            return None;
-        }
         let sin = radius / distance;
         let one_minus_cos = sin * sin / (1.0 + (1.0 - sin * sin).sqrt());
-        Some(Self {
+        Self {
             axis: to_center / distance,
             distance,
             one_minus_cos: one_minus_cos as f32,
-        })
+        }
     }
 
     /// The direction from the sphere's centre to the point where it is first met along `w`, a direction in the cone's local frame.
-    fn surface_direction(&self, w: Vec3, radius: f64) -> DVec3 {
+    #[inline(always)]
+    pub fn surface_direction(&self, w: Vec3, radius: f64) -> DVec3 {
         let sin2 = f64::from(w.x) * f64::from(w.x) + f64::from(w.y) * f64::from(w.y);
         let cos = (1.0 - sin2).max(0.0).sqrt();
         let to_line2 = self.distance * self.distance * sin2;

@@ -43,7 +43,7 @@ use crate::geometry::SurfaceInteraction;
 use crate::math::{Bounds3, Vec2, Vec3};
 use crate::sampling::SolidAnglePdf;
 use crate::spectrum::{SampledSpectrum, Wavelengths};
-use lanes::PlaneLight;
+use lanes::PlainLight;
 
 /// A light of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -129,18 +129,18 @@ impl Light {
         }
     }
 
-    /// As a plane that is alike all over, if it is one.
+    /// As a surface at rest that is alike all over, if it is one.
     #[inline]
-    fn plane(&self) -> Option<PlaneLight> {
+    fn plain(&self) -> Option<PlainLight> {
         match self {
-            Self::Area(light) => light.plane(),
+            Self::Area(light) => light.plain(),
             _ => None,
         }
     }
 
-    /// What a light that is such a plane sends out; 0 of others.
+    /// What such a light sends out; 0 of others.
     #[inline]
-    fn plane_radiance(&self, lambda: &Wavelengths) -> SampledSpectrum {
+    fn plain_radiance(&self, lambda: &Wavelengths) -> SampledSpectrum {
         match self {
             Self::Area(light) => light.constant_radiance(lambda),
             _ => SampledSpectrum::ZERO,

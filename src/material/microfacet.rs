@@ -155,7 +155,7 @@ impl Microfacets {
     }
 
     /// Fraction masked neither from `wo` nor from `wi`, with correlated heights or independently.
-    #[inline]
+    #[inline(always)]
     pub fn g(&self, wo: Vec3, wi: Vec3) -> f32 {
         if self.separable {
             return self.g1(wo) * self.g1(wi);
@@ -164,7 +164,7 @@ impl Microfacets {
     }
 
     /// Density of the normals visible from `w`, by solid angle (Heitz 2014, equation 16).
-    #[inline]
+    #[inline(always)]
     pub fn visible_normal_pdf(&self, w: Vec3, m: Vec3) -> f32 {
         if w.z == 0.0 {
             return 0.0;

@@ -32,40 +32,49 @@ pub const fn dimension_1_reversed(index: u32) -> u32 {
     x ^ ((x >> 16) & 0x0000_ffff)
 }
 
-/// Dimensions 2 and 3 of point `index`, reversed.
+/// Dimension 2 of point `index`, reversed.
+///
+/// The direction numbers of a primitive polynomial p of degree d, as power series in the shift S by a digit, obey its recurrence with one
+/// term more: p(X) v = S^d v, where X goes from one to the next. A point, the sum of X^i v_0 over the digits i of its index that are 1, is
+/// therefore the index as a polynomial in X, written in base p: what is left after p^k shifts the first d direction numbers by d k digits.
+/// As p^(2^j) has as few terms as p, that takes divisions by p^8, p^4, p^2 and p, each of all parts of the index at once.
 #[inline(always)]
-pub fn dimensions_2_3_reversed(index: u32) -> (u32, u32) {
-    let mut both = 0;
-    for (digit, row) in HEX_DIGITS.iter().enumerate() {
-        both ^= row[(index >> (4 * digit) & 15) as usize];
-    }
-    (both as u32, (both >> 32) as u32)
+pub const fn dimension_2_reversed(index: u32) -> u32 {
+    // p = X^2 + X + 1: the parts of a dividend by X^2n + X^n + 1 are a, b, c, d of n digits, a the lowest; a + c + d and b + c are left,
+    // and c + d and d are the quotient.
+    let mut x = index;
+    x ^= (x >> 8) & 0x00ff_ff00;
+    x ^= (x >> 16) & 0x0000_00ff;
+    x ^= (x >> 4) & 0x0ff0_0ff0;
+    x ^= (x >> 8) & 0x000f_000f;
+    x ^= (x >> 2) & 0x3c3c_3c3c;
+    x ^= (x >> 4) & 0x0303_0303;
+    x ^= (x >> 1) & 0x6666_6666;
+    x ^= (x >> 2) & 0x1111_1111;
+    // The first direction numbers are 1 and 1 + S.
+    x ^ ((x >> 1) & 0x5555_5555)
 }
 
-/// [`dimensions_2_3_reversed`] of several points without a look into tables, which vectors are slow at: the matrices of the two
-/// dimensions, diagonal by diagonal.
+/// Dimension 3 of point `index`, reversed: as [`dimension_2_reversed`].
 #[inline(always)]
-fn dimensions_2_3_of_lanes<const N: usize>(indices: [u32; N]) -> ([u32; N], [u32; N]) {
-    let (mut second, mut third) = ([0; N], [0; N]);
-    for (k, &[in_second, in_third]) in DIAGONALS.iter().enumerate() {
-        for i in 0..N {
-            let shifted = indices[i] >> k;
-            second[i] ^= shifted & in_second;
-            third[i] ^= shifted & in_third;
-        }
-    }
-    (second, third)
+pub const fn dimension_3_reversed(index: u32) -> u32 {
+    // p = X^3 + X + 1: of the parts a to f of a dividend by X^3n + X^n + 1, a + d + f, b + d + e + f, c + e + f are left, and d + f, e, f
+    // are the quotient. The first dividend has no e and f.
+    let mut x = index;
+    x ^= ((x >> 16) & 0x0000_ff00) ^ ((x >> 24) & 0x0000_00ff);
+    x ^= (x >> 8) & 0x0000_f000;
+    x ^= ((x >> 8) & 0x0000_0ff0) ^ ((x >> 12) & 0x0000_0fff);
+    x ^= (x >> 4) & 0xc00c_00c0;
+    x ^= ((x >> 4) & 0x3c03_c03c) ^ ((x >> 6) & 0x3f03_f03f);
+    x ^= (x >> 2) & 0x0820_8208;
+    x ^= ((x >> 2) & 0x0618_6186) ^ ((x >> 3) & 0x071c_71c7);
+    // The first direction numbers are 1, 1 + S and S^2.
+    x ^ ((x >> 1) & 0x4924_9249)
 }
 
 /// The first four dimensions of each of the points `indices`, Owen-scrambled by parts of its hash, in [0, 1).
 #[inline(always)]
 pub(super) fn scrambled_points<const N: usize>(indices: [u32; N], hashes: [u64; N]) -> [[f32; N]; 4] {
-    let (mut second, mut third) = ([0; N], [0; N]);
-    if N == 1 {
-        (second[0], third[0]) = dimensions_2_3_reversed(indices[0]);
-    } else {
-        (second, third) = dimensions_2_3_of_lanes(indices);
-    }
     let mut numbers = [[0.0; N]; 4];
     let [x, y, z, w] = &mut numbers;
     for i in 0..N {
@@ -73,8 +82,8 @@ pub(super) fn scrambled_points<const N: usize>(indices: [u32; N], hashes: [u64; 
         let (a, b) = (mix64(hash.wrapping_add(GOLDEN)), mix64(hash ^ GOLDEN.rotate_left(32)));
         x[i] = scrambled_unit(index, a as u32);
         y[i] = scrambled_unit(dimension_1_reversed(index), (a >> 32) as u32);
-        z[i] = scrambled_unit(second[i], b as u32);
-        w[i] = scrambled_unit(third[i], (b >> 32) as u32);
+        z[i] = scrambled_unit(dimension_2_reversed(index), b as u32);
+        w[i] = scrambled_unit(dimension_3_reversed(index), (b >> 32) as u32);
     }
     numbers
 }
@@ -84,85 +93,30 @@ fn scrambled_unit(reversed: u32, seed: u32) -> f32 {
     unit_f32(scramble_reversed(reversed, seed).reverse_bits())
 }
 
-/// For each hexadecimal digit of an index and each of its values: its share of dimension 2 (low half) and 3 (high half).
-/// One kilobyte, which stays in the cache where larger tables would push out the scene.
-static HEX_DIGITS: [[u64; 16]; 8] = hex_digit_tables();
-
-/// By distance k: which digits of dimensions 2 and 3, reversed, depend on the digit of the index k places above.
-static DIAGONALS: [[u32; 2]; 32] = diagonals();
-
-/// Direction numbers of dimensions 2 and 3: the primitive polynomials x^2 + x + 1 and x^3 + x + 1 with the initial numbers of Joe and
-/// Kuo.
-const DIRECTION_NUMBERS: [[u32; 32]; 2] = [direction_numbers(2, 1, [1, 3, 0]), direction_numbers(3, 1, [1, 3, 1])];
-
-const fn diagonals() -> [[u32; 2]; 32] {
-    let mut diagonals = [[0; 2]; 32];
-    let mut bit = 0;
-    while bit < 32 {
-        let mut d = 0;
-        while d < 2 {
-            // A digit of a point depends on no digit of the index below it.
-            let column = DIRECTION_NUMBERS[d][bit].reverse_bits();
-            let mut k = 0;
-            while k <= bit {
-                diagonals[k][d] |= column & 1 << (bit - k);
-                k += 1;
-            }
-            d += 1;
-        }
-        bit += 1;
-    }
-    diagonals
-}
-
-const fn hex_digit_tables() -> [[u64; 16]; 8] {
-    let [second, third] = DIRECTION_NUMBERS;
-    let mut tables = [[0; 16]; 8];
-    let mut bit = 0;
-    while bit < 32 {
-        let column = second[bit].reverse_bits() as u64 | (third[bit].reverse_bits() as u64) << 32;
-        let mut value = 0;
-        while value < 16 {
-            if value >> (bit % 4) & 1 == 1 {
-                tables[bit / 4][value] ^= column;
-            }
-            value += 1;
-        }
-        bit += 1;
-    }
-    tables
-}
-
-/// The direction numbers, most significant digit first, of the primitive polynomial of `degree` whose inner coefficients
-/// are the bits of `inner`, from the initial odd numbers `m` (Bratley and Fox 1988).
-const fn direction_numbers(degree: usize, inner: u32, m: [u32; 3]) -> [u32; 32] {
-    let mut v = [0; 32];
-    let mut i = 0;
-    while i < 32 {
-        if i < degree {
-            v[i] = m[i] << (31 - i);
-        } else {
-            v[i] = v[i - degree] ^ (v[i - degree] >> degree);
-            let mut k = 1;
-            while k < degree {
-                if inner >> (degree - 1 - k) & 1 == 1 {
-                    v[i] ^= v[i - k];
-                }
-                k += 1;
-            }
-        }
-        i += 1;
-    }
-    v
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// The direction numbers, most significant digit first, of the primitive polynomial of `degree` whose inner coefficients
+    /// are the bits of `inner`, from the initial odd numbers `m` (Bratley and Fox 1988).
+    fn direction_numbers(degree: usize, inner: u32, m: [u32; 3]) -> [u32; 32] {
+        let mut v = [0; 32];
+        for i in 0..degree {
+            v[i] = m[i] << (31 - i);
+        }
+        for i in degree..32 {
+            v[i] = v[i - degree] ^ (v[i - degree] >> degree);
+            for k in (1..degree).filter(|k| inner >> (degree - 1 - k) & 1 == 1) {
+                v[i] ^= v[i - k];
+            }
+        }
+        v
+    }
+
     fn point(index: u32) -> [u32; 4] {
-        let (second, third) = dimensions_2_3_reversed(index);
-        [index, dimension_1_reversed(index), second, third].map(u32::reverse_bits)
+        let [first, second, third] =
+            [dimension_1_reversed, dimension_2_reversed, dimension_3_reversed].map(|of| of(index));
+        [index, first, second, third].map(u32::reverse_bits)
     }
 
     #[test]
@@ -183,21 +137,23 @@ mod tests {
         }
     }
 
+    /// As published: the primitive polynomials x + 1, x^2 + x + 1 and x^3 + x + 1 with the initial numbers of Joe and Kuo.
     #[test]
-    fn pascal_steps_equal_the_recurrence() {
-        let v = direction_numbers(1, 0, [1, 0, 0]);
-        for index in (0..10_000_000_u32).step_by(9973).chain([u32::MAX]) {
-            let sum = (0..32).filter(|j| index >> j & 1 == 1).fold(0, |x, j| x ^ v[j]);
-            assert_eq!(dimension_1_reversed(index).reverse_bits(), sum);
-        }
-    }
-
-    #[test]
-    fn diagonals_give_what_the_tables_give() {
-        for index in (0..1 << 12).chain((0..1000_u32).map(|i| i.wrapping_mul(0x9e37_79b9))) {
-            let (second, third) = dimensions_2_3_of_lanes([index, !index]);
-            assert_eq!((second[0], third[0]), dimensions_2_3_reversed(index));
-            assert_eq!((second[1], third[1]), dimensions_2_3_reversed(!index));
+    fn steps_equal_the_recurrence() {
+        let dimensions = [
+            (
+                direction_numbers(1, 0, [1, 0, 0]),
+                dimension_1_reversed as fn(u32) -> u32,
+            ),
+            (direction_numbers(2, 1, [1, 3, 0]), dimension_2_reversed),
+            (direction_numbers(3, 1, [1, 3, 1]), dimension_3_reversed),
+        ];
+        for (v, reversed) in dimensions {
+            let single = (0..32).map(|bit| 1 << bit);
+            for index in (0..10_000_000_u32).step_by(9973).chain(single).chain([u32::MAX]) {
+                let sum = (0..32).filter(|j| index >> j & 1 == 1).fold(0, |x, j| x ^ v[j]);
+                assert_eq!(reversed(index).reverse_bits(), sum);
+            }
         }
     }
 

@@ -5,7 +5,7 @@
 
 use super::Scene;
 use crate::accel::{FilterHit, HitFilter, RayKind};
-use crate::geometry::{Hit, HitPacket, LANES, Ray, RayPacket, Shape, SurfaceInteraction, World};
+use crate::geometry::{Hit, HitPacket, LANES, Ray, RayPacket, Shape, SurfaceInteraction, SurfaceLanes, World};
 use crate::sampling::hash::{hash_u32s, unit_f32};
 use crate::texture::FloatTexture;
 
@@ -103,12 +103,21 @@ impl Scene {
         self.accel.occluded(kind, rays, Some(&cutouts));
     }
 
-    /// The surface that a hit of [`Scene::intersect`] at distance `t` means, where a ray may have passed the front of what it hit;
-    /// `None` if [`World::interaction`] says it.
+    /// The surface that a hit of [`Scene::intersect`] at distance `t` means: [`World::interaction`], but where the ray may have passed the
+    /// front of what it hit.
     #[inline]
-    pub fn interaction_behind(&self, ray: &Ray, hit: Hit, t: f32) -> Option<SurfaceInteraction> {
-        (self.has_cutouts && self.surfaces[hit.geometry.index()].alpha.is_some())
-            .then(|| interaction_near(&self.world, ray, hit, t))
+    pub fn interaction(&self, ray: &Ray, hit: Hit, t: f32) -> SurfaceInteraction {
+        if self.has_cutouts && self.surfaces[hit.geometry.index()].alpha.is_some() {
+            interaction_near(&self.world, ray, hit, t)
+        } else {
+            self.world.interaction(ray, hit)
+        }
+    }
+
+    /// [`Scene::interaction`] of the rays of a packet that hit something.
+    #[inline]
+    pub fn interactions(&self, surfaces: &mut SurfaceLanes, rays: &RayPacket, hits: &HitPacket) {
+        surfaces.fill(&self.world, rays, hits, |ray, hit, t| self.interaction(ray, hit, t));
     }
 }
 

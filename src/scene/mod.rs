@@ -121,12 +121,12 @@ impl Scene {
         &self.materials[self.surfaces[geometry.index()].material as usize]
     }
 
-    /// The reflectance of what was hit, if it is Lambertian and nothing else there: no light, nothing that rays may have passed.
+    /// The reflectance of what was hit, if it is Lambertian and nothing else there: no light.
     #[inline]
     pub fn lambertian(&self, hit: Hit) -> Option<&SpectrumTexture> {
         let surface = &self.surfaces[hit.geometry.index()];
         let emits = surface.lights.get(hit.primitive.index()).is_some_and(Option::is_some);
-        if emits || surface.alpha.is_some() {
+        if emits {
             return None;
         }
         self.materials[surface.material as usize].lambertian()

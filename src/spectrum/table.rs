@@ -5,6 +5,7 @@ use std::sync::{LazyLock, OnceLock};
 
 use super::rgb2spec::SigmoidPolynomial;
 use super::{ColorSpace, SampledSpectrum, Wavelengths, table_builder};
+use crate::math::Vec3;
 
 /// `SIZE` nodes along each axis.
 struct Table<const SIZE: usize> {
@@ -88,13 +89,12 @@ impl<const SIZE: usize> Table<SIZE> {
         let z = above.clamp(1, SIZE - 1) - 1;
         let dz = (brightest - self.nodes[z]) / (self.nodes[z + 1] - self.nodes[z]);
         let corner = ((largest * SIZE + z) * SIZE + y) * SIZE + x;
-        SigmoidPolynomial::from_coefficients(std::array::from_fn(|c| {
-            let at = |dz: usize, dy: usize, dx: usize| self.coefficients[corner + (dz * SIZE + dy) * SIZE + dx][c];
-            let lerp = |t: f32, a: f32, b: f32| a + (b - a) * t;
-            let row = |dz, dy| lerp(dx, at(dz, dy, 0), at(dz, dy, 1));
-            let face = |dz| lerp(dy, row(dz, 0), row(dz, 1));
-            lerp(dz, face(0), face(1))
-        }))
+        // All three coefficients of a corner at once: they are side by side.
+        let at = |index: usize| Vec3::from(self.coefficients[index]);
+        let lerp = |t: f32, a: Vec3, b: Vec3| a + (b - a) * t;
+        let row = |first: usize| lerp(dx, at(first), at(first + 1));
+        let face = |first: usize| lerp(dy, row(first), row(first + SIZE));
+        SigmoidPolynomial::from_coefficients(lerp(dz, face(corner), face(corner + SIZE * SIZE)).to_array())
     }
 }
 

@@ -160,7 +160,7 @@ impl MipMap {
         let (x, y) = match self.wrap {
             _ if inside => (x, y),
             Wrap::Black => return Vec3::ZERO,
-            Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
+            Wrap::Repeat => (wrapped(x, level.width), wrapped(y, level.height)),
             Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
             Wrap::Mirror => (mirrored(x, width), mirrored(y, height)),
             Wrap::OctahedralSphere => octahedral([x, y], [width, height]),
@@ -173,6 +173,14 @@ impl MipMap {
         let corner = at.floor();
         let d = at - corner;
         let (x, y) = (corner.x as i64, corner.y as i64);
+        let (x, y) = match self.wrap {
+            // Once, not for each of the four.
+            Wrap::Repeat => (
+                wrapped(x, self.levels[level].width),
+                wrapped(y, self.levels[level].height),
+            ),
+            _ => (x, y),
+        };
         let top = self.texel(level, x, y).lerp(self.texel(level, x + 1, y), d.x);
         let bottom = self.texel(level, x, y + 1).lerp(self.texel(level, x + 1, y + 1), d.x);
         top.lerp(bottom, d.y)
@@ -243,6 +251,19 @@ impl MipMap {
 
 /// exp(-2): the Gaussian at the ellipse's edge, where the filter is to be 0.
 const GAUSSIAN_END: f32 = 0.135_335_28;
+
+/// The texel that one of the image again is; without a division where that is near.
+#[inline]
+fn wrapped(x: i64, size: usize) -> i64 {
+    let size = size as i64;
+    if (0..size).contains(&x) {
+        x
+    } else if (size..2 * size).contains(&x) {
+        x - size
+    } else {
+        x.rem_euclid(size)
+    }
+}
 
 /// The texel that one beyond the edges is a mirror image of.
 fn mirrored(x: i64, size: i64) -> i64 {

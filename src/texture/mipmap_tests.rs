@@ -163,3 +163,12 @@ fn only_the_first_channel_where_a_number_is_wanted() {
     let depth = Image::new(window, window, vec!["Z".into()], vec![0.0; 2]).expect("an image");
     assert!(MipMap::new(&Arc::new(depth), Wrap::Clamp, true).is_none());
 }
+
+#[test]
+fn what_is_wrapped_is_the_remainder() {
+    for size in 1..9 {
+        for x in -30..30 {
+            assert_eq!(wrapped(x, size), x.rem_euclid(size as i64), "{x} of {size}");
+        }
+    }
+}

@@ -8,8 +8,19 @@ use lucerna::scene::ViewOverrides;
 use crate::common::render::{Built, MODES, parse};
 use crate::lamps::LAMPS;
 
-/// A room of what is taken together (Lambertian triangles, plain, with normals, with a picture, moving, black) and of what is not.
-fn scene(lamp: usize, motion: &str, light_sampler: &str) -> String {
+/// Spheres at rest: seen from outside, sunk into the floor, around it all and turned inwards; and planes beside them.
+const SPHERES: &str = r#"
+    AttributeBegin AreaLightSource "diffuse" "rgb L" [9 8 7] Translate -1.2 2.2 -0.5 Shape "sphere" "float radius" 0.3 AttributeEnd
+    AttributeBegin AreaLightSource "diffuse" "blackbody L" 3200 "float power" 20 "bool twosided" true
+        Translate 1.5 0.2 0.5 Shape "sphere" "float radius" 0.7 AttributeEnd
+    AttributeBegin AreaLightSource "diffuse" "rgb L" [0.3 0.3 0.4] ReverseOrientation Shape "sphere" "float radius" 30 AttributeEnd
+    AttributeBegin AreaLightSource "diffuse" "rgb L" [2 2 3] Translate 0 3.5 0 Rotate 90 1 0 0 Shape "disk" "float radius" 0.5 AttributeEnd
+    AttributeBegin AreaLightSource "diffuse" "rgb L" [2 2.2 2.4]
+        Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 4.5 -1  1 4.5 -1  1 4.5 1  -1 4.5 1] AttributeEnd"#;
+
+/// A room of what is taken together (Lambertian triangles, plain, with normals, with a picture, moving, black, with holes; spheres, with
+/// holes) and of what is not.
+fn scene(lights: &str, motion: &str, light_sampler: &str) -> String {
     format!(
         r#"LookAt 0 1.6 -5.5  0 0.8 0  0 1 0
         Camera "perspective" "float fov" 40 "float lensradius" 0.05 "float focaldistance" 5
@@ -17,7 +28,7 @@ fn scene(lamp: usize, motion: &str, light_sampler: &str) -> String {
         Sampler "sobol" "integer pixelsamples" 8
         Integrator "path" "integer maxdepth" 12 "string lightsampler" "{light_sampler}"
         WorldBegin
-        {lamp}
+        {lights}
         Texture "bricks" "spectrum" "imagemap" "string filename" "../scenes/parts/bricks.png" "float uscale" 3
         AttributeBegin
             Material "diffuse" "texture reflectance" "bricks"
@@ -37,17 +48,21 @@ fn scene(lamp: usize, motion: &str, light_sampler: &str) -> String {
             Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [1 0 -1  3 0 -1  2 2 0]
             Material "dielectric" Translate 0 0.7 -1 Shape "sphere" "float radius" 0.6
             Material "diffuse" Translate 0 1.3 0 Shape "sphere" "float radius" 0.6
-        AttributeEnd"#,
-        lamp = LAMPS[lamp].text(motion),
+            Shape "sphere" "float radius" 0.8 "float alpha" 0.4
+            Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-1 1 -0.7  1 1 -0.7  0 2 -0.7] "float alpha" 0.5
+        AttributeEnd"#
     )
 }
 
 #[test]
 fn paths_taken_together_are_those_taken_one_by_one() {
     let motions = ["", "ActiveTransform EndTime Translate 0.2 0.1 0.1 ActiveTransform All"];
-    for lamp in 0..LAMPS.len() {
-        let light_sampler = ["bvh", "power", "uniform"][lamp % 3];
-        let text = scene(lamp, motions[lamp % 2], light_sampler);
+    let spheres = ("spheres at rest", SPHERES.to_owned());
+    let lamps = LAMPS.iter().zip(motions.iter().cycle());
+    let lights = lamps.map(|(lamp, motion)| (lamp.name, lamp.text(motion)));
+    for (i, (lights_name, lights)) in lights.chain([spheres]).enumerate() {
+        let light_sampler = ["bvh", "power", "uniform"][i % 3];
+        let text = scene(&lights, motions[i % 2], light_sampler);
         for color in MODES {
             let built = Built::new(parse(&text), Backend::Bvh, color);
             let view = built.view(0, &ViewOverrides::default());
@@ -59,7 +74,7 @@ fn paths_taken_together_are_those_taken_one_by_one() {
                 let (together, stats) = built.picture_with(&view, Integrator::Path(path));
                 path.fault = Fault::OneByOne;
                 let (one_by_one, other) = built.picture_with(&view, Integrator::Path(path));
-                let name = format!("{} in {color:?}, {heuristic:?}", LAMPS[lamp].name);
+                let name = format!("{lights_name} in {color:?}, {heuristic:?}");
                 assert!(together.iter().sum::<f32>() > 0.0, "{name} is black");
                 let rays = |stats: &lucerna::integrator::RenderStats| (stats.bounce_rays, stats.shadow_rays);
                 assert_eq!(rays(&stats), rays(&other), "{name}");

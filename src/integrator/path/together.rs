@@ -79,7 +79,7 @@ impl PathIntegrator {
             return taken;
         }
         let surfaces = packet.surfaces.all();
-        let lights = lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
+        let lights = &lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
         let scattered = vectorizer.run(Scatter {
             rays: packet.rays,
             surfaces,

@@ -89,10 +89,7 @@ impl MediaShadows {
         (ray, hit): (&Ray, Option<(Hit, f32)>),
         mut light: LightOnItsWay,
     ) {
-        let met = hit.map(|(hit, t)| {
-            let behind = scene.interaction_behind(ray, hit, t);
-            behind.unwrap_or_else(|| scene.world().interaction(ray, hit))
-        });
+        let met = hit.map(|(hit, t)| scene.interaction(ray, hit, t));
         if met.is_some_and(|si| !scene.is_interface(si.hit.geometry)) {
             return;
         }

@@ -193,7 +193,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
         let packets = batch.rays.packets().iter().zip(&hits);
         for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
-            surfaces.fill(scene.world(), rays, hits);
+            scene.interactions(&mut surfaces, rays, hits);
             let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
             let numbers = EventLanes::draw(vectorizer, &streams, batch.depth);
             let mut is_done = [false; LANES];
@@ -217,8 +217,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                 let mut si;
                 let (mut surface, mut cone) = (None, lane.cone);
                 if let Some(hit) = hits.get(i) {
-                    let behind = scene.interaction_behind(ray, hit, hits.t[i]);
-                    si = behind.unwrap_or_else(|| surfaces.get(i, ray, hit));
+                    si = surfaces.get(i, ray, hit);
                     cone = cone.after(si.p.distance(ray.origin));
                     si.footprint = cone.width;
                     surface = Some(&si);

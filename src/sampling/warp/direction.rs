@@ -70,10 +70,21 @@ pub fn one_minus_cos(sin_squared: f32) -> f32 {
 /// [`one_minus_cos`]). The sample's own 1 - cos is `u.x` times that.
 #[inline]
 pub fn sample_uniform_cone(u: Vec2, one_minus_cos_max: f32) -> Vec3 {
-    let one_minus_cos = u.x * one_minus_cos_max;
+    direction_of_cone(u.x, sin_cos_of_turn(u.y).into(), one_minus_cos_max)
+}
+
+/// Sine and cosine of the part `u` of a full turn.
+#[inline]
+pub(crate) fn sin_cos_of_turn(u: f32) -> (f32, f32) {
+    (TAU * u).sin_cos()
+}
+
+/// [`sample_uniform_cone`] for its first number, and for sine and cosine of the turn that is its second.
+#[inline(always)]
+pub(crate) fn direction_of_cone(u: f32, sin_cos: Vec2, one_minus_cos_max: f32) -> Vec3 {
+    let one_minus_cos = u * one_minus_cos_max;
     let sin = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
-    let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
-    Vec3::new(sin * cos_phi, sin * sin_phi, 1.0 - one_minus_cos)
+    Vec3::new(sin * sin_cos.y, sin * sin_cos.x, 1.0 - one_minus_cos)
 }
 
 /// The density of [`sample_uniform_cone`] inside the cone: one over its solid angle 2π (1 - cos θ).

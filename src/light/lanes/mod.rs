@@ -1,0 +1,223 @@
+//! Points of lights for the eight lanes of a packet, computed together.
+
+mod planes;
+mod spheres;
+
+use super::{Light, LightDensity, LightEnd, LightId, LightSample};
+use crate::math::{Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
+use crate::spectrum::{SpectrumLanes, Wavelengths};
+pub(super) use planes::PlaneLight;
+use planes::Planes;
+pub(super) use spheres::SphereLight;
+use spheres::Spheres;
+
+/// [`Light::sample_li`] of eight lanes: the same bits, several times faster for planes and spheres at rest that are alike all over. Made
+/// once for the lights of a scene and used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct LightLanes {
+    vectorizer: Vectorizer,
+    /// The light that was put into the lane last, and whether it is a sphere.
+    held: [Option<(LightId, bool)>; LANES],
+    planes: Planes,
+    spheres: Spheres,
+    two_sided: [bool; LANES],
+    radiance: SpectrumLanes,
+}
+
+/// A light at rest that sends out the same radiance everywhere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlainLight {
+    pub shape: PlainShape,
+    pub two_sided: bool,
+}
+
+/// Its surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PlainShape {
+    Plane(PlaneLight),
+    Sphere(SphereLight),
+}
+
+/// What [`LightSample`] is of one lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LightSampleLanes {
+    /// See [`LightSample::li`].
+    pub li: SpectrumLanes,
+    /// See [`LightSample::wi`].
+    pub wi: Vec3Lanes,
+    /// With respect to solid angle; 0 where nothing was found, 1 for a [`LightDensity::Delta`].
+    pub pdf: Lanes,
+    /// Whether it is a [`LightDensity::Delta`].
+    pub is_delta: [bool; LANES],
+    /// Whether it is at [`LightEnd::Infinity`].
+    pub is_infinite: [bool; LANES],
+    /// See [`LightEnd::Point`].
+    pub p: Vec3Lanes,
+    /// See [`LightEnd::Point`].
+    pub error: Lanes,
+    /// See [`LightEnd::Point`].
+    pub ng: Vec3Lanes,
+}
+
+/// Points of surfaces.
+#[derive(Clone, Copy, Debug, Default)]
+struct Points {
+    p: Vec3Lanes,
+    error: Lanes,
+    ng: Vec3Lanes,
+    /// With respect to solid angle.
+    pdf: Lanes,
+}
+
+/// The light that a lane samples, and the wavelengths of its path.
+pub type ChosenLight<'a> = (LightId, &'a Light, &'a Wavelengths);
+
+impl LightLanes {
+    /// Samples a direction from `p` at `time` in each lane towards its light; nothing in lanes without one.
+    #[inline]
+    pub fn sample(
+        &mut self,
+        lights: &[Option<ChosenLight<'_>>; LANES],
+        p: &Vec3Lanes,
+        time: &Lanes,
+        u: [&Lanes; 2],
+    ) -> LightSampleLanes {
+        let (mut is_plane, mut is_sphere) = ([false; LANES], [false; LANES]);
+        for (lane, chosen) in lights.iter().enumerate() {
+            let Some((id, light, lambda)) = *chosen else { continue };
+            let Some(sphere) = self.hold(lane, id, light) else {
+                continue;
+            };
+            (is_plane[lane], is_sphere[lane]) = (!sphere, sphere);
+            self.radiance.set(lane, light.plain_radiance(lambda));
+        }
+        if is_sphere != [false; LANES] {
+            is_sphere = self.spheres.fit(is_sphere, p);
+        }
+        let mut samples = self.vectorizer.run(Compute {
+            lights: &*self,
+            has_planes: is_plane != [false; LANES],
+            is_sphere,
+            turns: self.spheres.turns(is_sphere, u[1]),
+            p,
+            u,
+        });
+        for (lane, chosen) in lights.iter().enumerate() {
+            if is_plane[lane] || is_sphere[lane] {
+                continue;
+            }
+            let sample = chosen.and_then(|(_, light, lambda)| {
+                light.sample_li(p.get(lane), time[lane], Vec2::new(u[0][lane], u[1][lane]), lambda)
+            });
+            samples.set(lane, sample.as_ref());
+        }
+        samples
+    }
+
+    /// Puts a light into a lane, unless it is there, and says whether it is a sphere; `None` if it is not plain.
+    #[inline]
+    fn hold(&mut self, lane: usize, id: LightId, light: &Light) -> Option<bool> {
+        if let Some((held, is_sphere)) = self.held[lane]
+            && held == id
+        {
+            return Some(is_sphere);
+        }
+        let light = light.plain()?;
+        match &light.shape {
+            PlainShape::Plane(plane) => self.planes.set(lane, plane),
+            PlainShape::Sphere(sphere) => self.spheres.set(lane, sphere),
+        }
+        self.two_sided[lane] = light.two_sided;
+        let is_sphere = matches!(light.shape, PlainShape::Sphere(_));
+        self.held[lane] = Some((id, is_sphere));
+        Some(is_sphere)
+    }
+}
+
+impl LightSampleLanes {
+    fn set(&mut self, lane: usize, sample: Option<&LightSample>) {
+        let Some(sample) = sample else {
+            self.pdf[lane] = 0.0;
+            return;
+        };
+        self.li.set(lane, sample.li);
+        self.wi.set(lane, sample.wi);
+        (self.is_delta[lane], self.pdf[lane]) = match sample.density {
+            LightDensity::Delta => (true, 1.0),
+            LightDensity::Continuous(pdf) => (false, pdf.0),
+        };
+        let (p, error, ng) = match sample.end {
+            LightEnd::Point { p, error, ng } => (p, error, ng),
+            LightEnd::Infinity => (Vec3::ZERO, 0.0, Vec3::ZERO),
+        };
+        self.is_infinite[lane] = matches!(sample.end, LightEnd::Infinity);
+        self.p.set(lane, p);
+        self.error[lane] = error;
+        self.ng.set(lane, ng);
+    }
+}
+
+/// See [`LightLanes::sample`].
+struct Compute<'a> {
+    lights: &'a LightLanes,
+    has_planes: bool,
+    is_sphere: [bool; LANES],
+    /// See [`Spheres::turns`].
+    turns: [Lanes; 2],
+    p: &'a Vec3Lanes,
+    u: [&'a Lanes; 2],
+}
+
+impl Kernel for Compute<'_> {
+    type Output = LightSampleLanes;
+
+    #[inline(always)]
+    fn call(self) -> LightSampleLanes {
+        let mut points = Points::default();
+        if self.has_planes {
+            points = self.lights.planes.points(self.p, self.u);
+        }
+        if self.is_sphere != [false; LANES] {
+            let on_spheres = self.lights.spheres.points(self.p, self.u[0], &self.turns);
+            points = on_spheres.or(self.is_sphere, &points);
+        }
+        let mut samples = LightSampleLanes::default();
+        for i in 0..LANES {
+            let (point, ng, pdf) = (points.p.get(i), points.ng.get(i), points.pdf[i]);
+            let to_light = point - self.p.get(i);
+            let inverse_distance = 1.0 / to_light.length();
+            let wi = to_light * inverse_distance;
+            let radiance = self.lights.radiance.get(i);
+            let is_found = (inverse_distance > 0.0)
+                & (inverse_distance < f32::INFINITY)
+                & (self.lights.two_sided[i] | (ng.dot(-wi) > 0.0))
+                & (pdf > 0.0)
+                & (pdf < f32::INFINITY)
+                & !radiance.is_black();
+            samples.li.set(i, radiance);
+            samples.wi.set(i, wi);
+            samples.pdf[i] = if is_found { pdf } else { 0.0 };
+            samples.p.set(i, point);
+            samples.error[i] = points.error[i];
+            samples.ng.set(i, ng);
+        }
+        samples
+    }
+}
+
+impl Points {
+    /// These in some lanes, and `others` in the rest.
+    #[inline(always)]
+    fn or(&self, these: [bool; LANES], others: &Self) -> Self {
+        let mut points = *others;
+        for (i, this) in these.into_iter().enumerate() {
+            let select = |a: f32, b: f32| if this { a } else { b };
+            let select3 = |a: Vec3, b: Vec3| Vec3::new(select(a.x, b.x), select(a.y, b.y), select(a.z, b.z));
+            points.p.set(i, select3(self.p.get(i), others.p.get(i)));
+            points.error[i] = select(self.error[i], others.error[i]);
+            points.ng.set(i, select3(self.ng.get(i), others.ng.get(i)));
+            points.pdf[i] = select(self.pdf[i], others.pdf[i]);
+        }
+        points
+    }
+}
