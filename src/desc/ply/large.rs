@@ -67,15 +67,18 @@ fn mesh(file: &File, length: u64, header: &Header) -> Option<MeshDesc> {
         } else if element.name == "vertex" && mesh.positions.is_empty() {
             u32::try_from(element.count).ok()?;
             let columns = Columns::of(element, Vec::new()).ok()?;
-            let at = rows::numbers(element, header.encoding);
-            let three = |columns: [usize; 3]| part.read(|row| Some(columns.map(|i| at(row, i))));
+            let three = |columns: [usize; 3]| {
+                let tuple = rows::tuples(element, header.encoding, columns);
+                part.read(|row| Some(tuple(row)))
+            };
             let vectors = |values: Vec<[f32; 3]>| values.into_iter().map(Vec3::from_array).collect();
             mesh.positions = vectors(three(columns.position)?);
             if let Some(normal) = columns.normal {
                 mesh.normals = vectors(three(normal)?);
             }
             if let Some(uv) = columns.uv {
-                let values: Vec<[f32; 2]> = part.read(|row| Some(uv.map(|i| at(row, i))))?;
+                let tuple = rows::tuples(element, header.encoding, uv);
+                let values: Vec<[f32; 2]> = part.read(|row| Some(tuple(row)))?;
                 mesh.uvs = values.into_iter().map(Vec2::from_array).collect();
             }
         }

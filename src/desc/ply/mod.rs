@@ -143,16 +143,23 @@ fn check(mesh: &MeshDesc) -> Result<(), (&'static str, String)> {
         let element = if count == 0 { "vertex" } else { "face" };
         return Err((element, "there are no vertices or no faces".to_owned()));
     }
-    let is_beyond = |&&i: &&u32| i as usize >= count;
-    let faces = mesh.indices.par_iter().with_min_len(1 << 14);
-    if let Some(bad) = faces
-        .filter_map(|face| face.iter().find(is_beyond))
-        .find_first(|_| true)
-    {
+    let faces = || mesh.indices.par_iter().with_min_len(1 << 14);
+    let last = faces().map(|&[a, b, c]| a.max(b).max(c)).reduce(|| 0, u32::max);
+    if last as usize >= count {
+        let is_beyond = |&&i: &&u32| i as usize >= count;
+        let bad = faces()
+            .filter_map(|face| face.iter().find(is_beyond))
+            .find_first(|_| true);
+        let bad = bad.unwrap_or(&last);
         let message = format!("a face has the vertex {bad}, but there are {count}, counted from 0");
         return Err(("face", message));
     }
-    let finite = |values: &[Vec3]| values.iter().position(|v| !v.is_finite());
+    let finite = |values: &[Vec3]| {
+        values
+            .par_iter()
+            .with_min_len(1 << 14)
+            .position_first(|v| !v.is_finite())
+    };
     let uv = mesh.uvs.iter().position(|v| !v.is_finite());
     let is_finite = |attribute: &&MeshAttributeDesc| attribute.values.iter().all(|v| v.is_finite());
     if let Some(bad) = mesh.attributes.iter().find(|attribute| !is_finite(attribute)) {

@@ -23,10 +23,10 @@ pub(super) fn vertices(
 ) {
     let at = numbers(element, encoding);
     let vectors = |columns: [usize; 3], into: &mut Vec<Vec3>| {
-        let vector = |row| Vec3::from_array(columns.map(|i| at(row, i)));
+        let tuple = tuples(element, encoding, columns);
         rows.par_chunks_exact(row)
             .with_min_len(SPAN)
-            .map(vector)
+            .map(|row| Vec3::from_array(tuple(row)))
             .collect_into_vec(into);
     };
     vectors(columns.position, &mut mesh.positions);
@@ -34,10 +34,10 @@ pub(super) fn vertices(
         vectors(normal, &mut mesh.normals);
     }
     if let Some(uv) = columns.uv {
-        let pair = |row| Vec2::from_array(uv.map(|i| at(row, i)));
+        let tuple = tuples(element, encoding, uv);
         rows.par_chunks_exact(row)
             .with_min_len(SPAN)
-            .map(pair)
+            .map(|row| Vec2::from_array(tuple(row)))
             .collect_into_vec(&mut mesh.uvs);
     }
     for (attribute, columns) in mesh.attributes[first_attribute..].iter_mut().zip(&columns.attributes) {
@@ -48,7 +48,7 @@ pub(super) fn vertices(
 }
 
 /// The number in a column of a row.
-pub(super) fn numbers(element: &Element, encoding: Encoding) -> impl Fn(&[u8], usize) -> f32 + Sync + '_ {
+fn numbers(element: &Element, encoding: Encoding) -> impl Fn(&[u8], usize) -> f32 + Sync + '_ {
     let offsets: Vec<usize> = element
         .properties
         .iter()
@@ -59,6 +59,32 @@ pub(super) fn numbers(element: &Element, encoding: Encoding) -> impl Fn(&[u8], u
         })
         .collect();
     move |row, i| decode(&row[offsets[i]..], element.properties[i].value, encoding) as f32
+}
+
+/// The numbers in some columns of a row.
+pub(super) fn tuples<const N: usize>(
+    element: &Element,
+    encoding: Encoding,
+    columns: [usize; N],
+) -> impl Fn(&[u8]) -> [f32; N] + Sync + '_ {
+    let at = numbers(element, encoding);
+    let offset = |column| {
+        element.properties[..column]
+            .iter()
+            .map(|p| p.value.bytes())
+            .sum::<usize>()
+    };
+    let offsets = columns.map(offset);
+    // Nearly all files have these, and a decision for each number takes longer than all the rest.
+    let are_floats = columns.iter().all(|&i| element.properties[i].value == Scalar::F32);
+    let is_plain = are_floats && encoding == Encoding::LittleEndian;
+    move |row| {
+        if is_plain {
+            offsets.map(|i| f32::from_le_bytes([row[i], row[i + 1], row[i + 2], row[i + 3]]))
+        } else {
+            columns.map(|i| at(row, i))
+        }
+    }
 }
 
 /// The bytes of a triangle, if faces are nothing but a list with a length of one byte and corners of four.
@@ -91,15 +117,14 @@ pub(super) fn triangles(rows: &[u8], row: usize, encoding: Encoding) -> Option<V
 /// told of elsewhere, with its place.
 #[inline]
 pub(super) fn triangle(face: &[u8], encoding: Encoding) -> Option<[u32; 3]> {
+    let &[length, ref bytes @ ..] = face.first_chunk::<13>()?;
     let corner = |i: usize| {
-        let start = 1 + 4 * i;
-        let bytes = [face[start], face[start + 1], face[start + 2], face[start + 3]];
+        let bytes = [bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]];
         match encoding {
             Encoding::BigEndian => u32::from_be_bytes(bytes),
             _ => u32::from_le_bytes(bytes),
         }
     };
-    let corners = [corner(0), corner(1), corner(2)];
-    let is_corner = |&i: &u32| i <= i32::MAX as u32;
-    (face[0] == 3 && corners.iter().all(is_corner)).then_some(corners)
+    let [a, b, c] = [corner(0), corner(1), corner(2)];
+    (length == 3 && (a | b | c) <= i32::MAX as u32).then_some([a, b, c])
 }
