@@ -36,6 +36,9 @@ impl Census {
 
 /// What a tree is built over, by number.
 pub trait Primitives: Sync {
+    /// Whether any [may be split](Self::corners).
+    const SPLITS: bool;
+
     /// How many there are of what.
     fn census(&self) -> Census;
 
@@ -120,11 +123,12 @@ pub fn mesh(world: &World, id: GeometryId) -> Option<&TriangleMesh> {
 
 /// What does not move: triangles, other primitives, and instances by the box of all that they sweep.
 pub struct Fixed<'a> {
-    world: &'a World,
     /// The triangles.
     pub triangles: Triangles<'a>,
     /// The other primitives.
     pub analytic: Vec<(GeometryId, PrimitiveId)>,
+    /// Boxes around those, which take longer to find than to keep.
+    analytic_bounds: Vec<Bounds3>,
     instances: &'a [Bounds3],
 }
 
@@ -140,10 +144,15 @@ impl<'a> Fixed<'a> {
             };
             (0..count).map(move |primitive| (id, PrimitiveId::from_index(primitive)))
         };
+        let analytic: Vec<_> = members.iter().flat_map(of_shape).collect();
+        let bounds = |&(id, primitive): &(GeometryId, PrimitiveId)| {
+            let shape = &world.geometry(id).shape;
+            shape.primitive_bounds(primitive.index())
+        };
         Self {
-            world,
             triangles: Triangles::new(world, members, |mesh| !mesh.is_moving()),
-            analytic: members.iter().flat_map(of_shape).collect(),
+            analytic_bounds: analytic.par_iter().map(bounds).collect(),
+            analytic,
             instances,
         }
     }
@@ -151,10 +160,7 @@ impl<'a> Fixed<'a> {
     /// A box around what a leaf refers to that holds no triangles.
     pub fn leaf_bounds(&self, child: Child) -> Bounds3 {
         match child {
-            Child::Analytic(index) => {
-                let (geometry, primitive) = self.analytic[index];
-                self.world.geometry(geometry).shape.primitive_bounds(primitive.index())
-            }
+            Child::Analytic(index) => self.analytic_bounds[index],
             Child::Instance(index) => self.instances[index],
             Child::Node(_) | Child::Block(_) => Bounds3::EMPTY,
         }
@@ -162,6 +168,8 @@ impl<'a> Fixed<'a> {
 }
 
 impl Primitives for Fixed<'_> {
+    const SPLITS: bool = true;
+
     fn census(&self) -> Census {
         Census {
             triangles: self.triangles.count(),
@@ -216,6 +224,8 @@ pub fn between(start: Bounds3, end: Bounds3) -> Bounds3 {
 }
 
 impl Primitives for Moving<'_> {
+    const SPLITS: bool = false;
+
     fn census(&self) -> Census {
         Census {
             triangles: self.triangles.count(),
@@ -254,6 +264,8 @@ pub mod tests {
     }
 
     impl Primitives for Boxes {
+        const SPLITS: bool = false;
+
         fn census(&self) -> Census {
             Census {
                 triangles: number(self.0.len()),

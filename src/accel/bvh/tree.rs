@@ -103,7 +103,7 @@ struct Shape {
 
 impl Shape {
     /// Over primitives, with the items that it was made of, if it was, in the order of the leaves; `None` over nothing.
-    fn new(primitives: &impl Primitives, quality: BuildQuality) -> Option<(Self, Vec<Item>)> {
+    fn new<P: Primitives>(primitives: &P, quality: BuildQuality) -> Option<(Self, Vec<Item>)> {
         let census = primitives.census();
         if census.count() == 0 {
             return None;
@@ -117,7 +117,10 @@ impl Shape {
                 bins: 16,
                 splits: false,
             },
-            BuildQuality::High => BuildParams { bins: 32, splits: true },
+            BuildQuality::High => BuildParams {
+                bins: 32,
+                splits: P::SPLITS,
+            },
         };
         let Built { tree, items } = build::build(primitives, params);
         let analytic = |leaf: Leaf| {
