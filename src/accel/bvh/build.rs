@@ -109,11 +109,9 @@ struct Builder<'a, P> {
 
 /// Where a range of items is among all, and how deep in the tree.
 #[derive(Clone, Copy)]
-pub struct Place {
-    /// Where it begins.
-    pub first: usize,
-    /// Levels above it.
-    pub level: u32,
+struct Place {
+    first: usize,
+    level: u32,
 }
 
 /// Items divided: those of the lower side are first in the range, those of the other at its end, and both have room behind them.

@@ -9,7 +9,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::bins::TO_INTEGER;
-use super::build::{Leaf, MOST_LEVELS, Place};
+use super::build::{Leaf, MOST_LEVELS};
 use super::item::Box4;
 use super::leaf::LANES;
 use super::node::{Child, ChildRef, WIDTH};
@@ -23,6 +23,9 @@ const CHUNK: usize = 32 * 1024;
 
 /// Bits of codes by which keys are first dealt out.
 const BUCKET_BITS: u32 = 11;
+
+/// Cells along an axis, in bits, at most: as many as [`TO_INTEGER`] leaves room for, and a key.
+const MOST_CELL_BITS: u32 = 21;
 
 /// Of a primitive, its code along the curve above its number.
 type Key = u64;
@@ -41,7 +44,7 @@ impl Format {
         let index_bits = usize::BITS - count.leading_zeros();
         Self {
             index_bits,
-            cell_bits: ((Key::BITS - index_bits) / 3).min(21),
+            cell_bits: ((Key::BITS - index_bits) / 3).min(MOST_CELL_BITS),
         }
     }
 
@@ -66,7 +69,7 @@ pub fn build(primitives: &impl Primitives) -> (Topology, Vec<u32>) {
         format,
     };
     let mut topology = Topology::default();
-    builder.node(&mut keys, Place { first: 0, level: 0 }, Division::Curve, &mut topology);
+    builder.node(&mut keys, 0, Division::Curve, &mut topology);
     let mut order = vec_in_large_pages(keys.len());
     keys.par_iter()
         .map(|&key| format.index(key))
@@ -207,8 +210,12 @@ enum Division {
     Number,
 }
 
-/// Levels of nodes after which keys are divided in halves, which needs no more than eleven.
-const MOST_CURVED: u32 = MOST_LEVELS - 16;
+/// Levels of nodes, at most. Of a node's seven divisions none is of a smaller cell than what they leave whole, so that a node below another by the
+/// same curve has a cell of at most an eighth of its size, and one by number an eighth of its keys. There are two curves, and where one
+/// way of dividing follows another a node may have but few keys less than the one above it.
+const MOST_NODE_LEVELS: u32 = 2 * MOST_CELL_BITS + 11 + 2;
+
+const _: () = assert!(MOST_NODE_LEVELS < MOST_LEVELS);
 
 /// The parts of a node's keys that its children are over.
 struct Parts {
@@ -278,13 +285,8 @@ impl<P: Primitives> Builder<'_, P> {
     }
 
     /// Adds a node over keys, of which the first is at a place among all, and what is below it.
-    fn node(&self, keys: &mut [Key], place: Place, division: Division, topology: &mut Topology) {
+    fn node(&self, keys: &mut [Key], first: usize, division: Division, topology: &mut Topology) {
         let node = topology.add_node();
-        let division = if place.level < MOST_CURVED {
-            division
-        } else {
-            Division::Number
-        };
         let mut parts = Parts::new(keys.len(), self.urgency(keys, division), division);
         while parts.count < WIDTH
             && let Some(part) = parts.next()
@@ -302,23 +304,20 @@ impl<P: Primitives> Builder<'_, P> {
             let range = parts.range(slot);
             let (keys, others) = rest.split_at_mut(range.len());
             rest = others;
-            let place = Place {
-                first: place.first + range.start,
-                level: place.level + 1,
-            };
+            let first = first + range.start;
             let division = parts.division[slot];
             if parts.urgency[slot] == 0 {
-                topology.nodes[node][slot] = self.leaf(keys, place.first, topology);
+                topology.nodes[node][slot] = self.leaf(keys, first, topology);
             } else if is_parallel {
-                below.push((slot, (keys, place, division)));
+                below.push((slot, (keys, first, division)));
             } else {
                 topology.nodes[node][slot] = ChildRef::new(Child::Node(topology.nodes.len()));
-                self.node(keys, place, division, topology);
+                self.node(keys, first, division, topology);
             }
         }
-        topology.append_all(node, below, |(keys, place, division), tree| {
+        topology.append_all(node, below, |(keys, first, division), tree| {
             tree.reserve(keys.len());
-            self.node(keys, place, division, tree);
+            self.node(keys, first, division, tree);
         });
     }
 
@@ -351,7 +350,10 @@ impl<P: Primitives> Builder<'_, P> {
             *division = Division::OwnCurve;
         }
         let differing = differing(keys, ends);
-        if differing == 0 || *division == Division::Number {
+        if differing == 0 {
+            *division = Division::Number;
+        }
+        if *division == Division::Number {
             return keys.len() / 2;
         }
         // All codes from the first with the highest bit in which they differ.
@@ -416,7 +418,7 @@ mod tests {
         ] {
             let (topology, order) = build(&boxes);
             let levels = levels(&topology, 0);
-            assert!(levels <= MOST_LEVELS, "{levels} levels");
+            assert!(levels <= MOST_NODE_LEVELS, "{levels} levels");
             let mut found: Vec<u32> = topology
                 .blocks
                 .iter()
