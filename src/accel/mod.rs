@@ -124,12 +124,14 @@ impl Backend {
         Self::Bvh,
     ];
 
-    /// The one for a world if nobody asks for another: our BVH from [`Backend::MANY`] primitives on, where it needs less memory to
-    /// build and on average traces faster, unless there are instances, which are slower in it, or what only Embree has is asked for; else the default.
+    /// The one for a world if nobody asks for another. Our BVH from [`Backend::MANY`] primitives on, where it needs less memory to build and
+    /// on average traces faster, unless there are instances, which are slower in it; and for spheres among few primitives, which it tests many at
+    /// a time, where Embree calls back for each. Elsewhere, and where what only Embree has is asked for, the default.
     pub fn for_world(world: &World, options: &BuildOptions) -> Self {
         let primitives: usize = world.geometries().iter().map(Geometry::primitive_count).sum();
         let wants_embree = options.compact || !options.robust;
-        if primitives >= Self::MANY && world.instances().is_empty() && !wants_embree {
+        let is_large = primitives >= Self::MANY && world.instances().is_empty();
+        if (is_large || bvh::Bvh::has_spheres_among_few(world)) && !wants_embree {
             Self::Bvh
         } else {
             Self::default()

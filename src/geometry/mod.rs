@@ -26,6 +26,7 @@ pub use patch::{Patch, PatchHit};
 pub use patch_mesh::{PatchMesh, PatchSurface};
 pub use quadric::{Quadric, QuadricKind, QuadricPoint};
 pub use shape::{LineHits, Shape};
+pub(crate) use sphere::line_roots_or_nan;
 pub use sphere::{Sphere, SphereHits};
 pub use surface::{Hit, SurfaceInteraction};
 pub use surface_lanes::{SurfaceLanes, Surfaces};

@@ -1,6 +1,6 @@
 //! Where shapes are that keep a space of their own.
 
-use crate::math::{AnimatedTransform, Bounds3, DAffine3, DVec3, Vec3};
+use crate::math::{AnimatedTransform, Bounds3, DAffine3, DMat3, DVec3, Vec3};
 
 /// The space of a shape in the world (or in its group), in double precision, and the side of its geometric normal.
 #[derive(Clone, Copy, Debug)]
@@ -8,6 +8,8 @@ pub(super) struct Placement {
     pub world_from_object: DAffine3,
     pub object_from_world: DAffine3,
     pub flip_normal: bool,
+    /// Where the transform moves the origin, if that is all it does.
+    pub only_moved_by: Option<DVec3>,
 }
 
 impl Placement {
@@ -17,12 +19,17 @@ impl Placement {
             world_from_object,
             object_from_world: AnimatedTransform::fixed(world_from_object)?.inverse_at(0.0),
             flip_normal: false,
+            only_moved_by: (world_from_object.matrix3 == DMat3::IDENTITY).then_some(world_from_object.translation),
         })
     }
 
     /// Origin and direction of a ray of the world in object space. Distances along it are the same.
     #[inline]
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
+        // With no zeros added, which could be of the other sign: as it is done for many rays at a time.
+        if let Some(by) = self.only_moved_by {
+            return (origin - by, direction);
+        }
         let object = &self.object_from_world;
         (object.transform_point3(origin), object.transform_vector3(direction))
     }

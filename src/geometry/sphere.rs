@@ -59,6 +59,11 @@ impl Sphere {
         &self.placement.world_from_object
     }
 
+    /// The centre of a sphere that its transform only moves, in world space (or that of the group).
+    pub fn only_moved_by(&self) -> Option<DVec3> {
+        self.placement.only_moved_by
+    }
+
     /// World space to object space.
     pub fn object_from_world(&self) -> &DAffine3 {
         &self.placement.object_from_world
@@ -97,18 +102,52 @@ impl Sphere {
 /// Intersection").
 #[inline]
 pub(super) fn line_roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
-    let a = d.length_squared();
-    let b = -o.dot(d);
-    let to_line = o + d * (b / a);
-    let discriminant = radius * radius - to_line.length_squared();
-    if discriminant.is_nan() || discriminant < 0.0 {
-        return None;
+    let quadratic = Quadratic::new(o, d, radius);
+    (quadratic.discriminant >= 0.0).then(|| quadratic.roots())
+}
+
+/// The same; NaN for none.
+#[inline(always)]
+pub(crate) fn line_roots_or_nan(o: DVec3, d: DVec3, radius: f64) -> [f64; 2] {
+    let quadratic = Quadratic::new(o, d, radius);
+    let roots = quadratic.roots();
+    if quadratic.discriminant >= 0.0 {
+        roots
+    } else {
+        [f64::NAN; 2]
     }
-    // |o|² - r² by a difference of lengths: exact to the last bits where the ray starts on the sphere.
-    let distance = o.length();
-    let c = (distance - radius) * (distance + radius);
-    let q = b + (a * discriminant).sqrt().copysign(b);
-    Some(if q == 0.0 { [0.0, 0.0] } else { [c / q, q / a] })
+}
+
+/// a t² - 2 b t + c = 0, and its discriminant over a.
+struct Quadratic {
+    a: f64,
+    b: f64,
+    c: f64,
+    /// NaN if there is no direction.
+    discriminant: f64,
+}
+
+impl Quadratic {
+    #[inline(always)]
+    fn new(o: DVec3, d: DVec3, radius: f64) -> Self {
+        let a = d.length_squared();
+        let b = -o.dot(d);
+        let to_line = o + d * (b / a);
+        // |o|² - r² by a difference of lengths: exact to the last bits where the ray starts on the sphere.
+        let distance = o.length();
+        Self {
+            a,
+            b,
+            c: (distance - radius) * (distance + radius),
+            discriminant: radius * radius - to_line.length_squared(),
+        }
+    }
+
+    #[inline(always)]
+    fn roots(&self) -> [f64; 2] {
+        let q = self.b + (self.a * self.discriminant).sqrt().copysign(self.b);
+        if q == 0.0 { [0.0, 0.0] } else { [self.c / q, q / self.a] }
+    }
 }
 
 #[cfg(test)]

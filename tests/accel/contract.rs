@@ -313,6 +313,36 @@ fn a_tree_does_not_depend_on_threads_and_its_quality_changes_no_answer() {
 }
 
 #[test]
+fn few_spheres_are_for_our_bvh_where_it_tests_many_at_a_time() {
+    let usual = BuildOptions::default();
+    let rng = &mut Rng::new(11);
+    let expect = |shapes: Vec<Shape>, backend: Backend| {
+        assert_eq!(Backend::for_world(&worlds::of_shapes(shapes), &usual), backend);
+    };
+    let ours = if Bvh::variant_names().iter().any(|name| name.ends_with("exhaustive")) {
+        Backend::Bvh
+    } else {
+        Backend::default()
+    };
+    expect(vec![worlds::moved_spheres(rng, 32)], ours);
+    expect(vec![worlds::moved_spheres(rng, 12), Shape::Mesh(worlds::cube())], ours);
+    expect(vec![Shape::Mesh(worlds::cube())], Backend::default());
+    expect(vec![worlds::moved_spheres(rng, 33)], Backend::default());
+    expect(vec![worlds::spheres(rng, 2)], Backend::default());
+    expect(vec![worlds::quadrics(rng, 2)], Backend::default());
+    let unmoved: &dyn Fn(Vec3) -> Vec3 = &|p| p;
+    let moving = worlds::moving(&worlds::cube(), &[unmoved, &|p| 2.0 * p]);
+    expect(vec![Shape::Mesh(moving)], Backend::default());
+    let world = worlds::of_shapes(vec![worlds::moved_spheres(rng, 2)]);
+    for options in [
+        BuildOptions { compact: true, ..usual },
+        BuildOptions { robust: false, ..usual },
+    ] {
+        assert_eq!(Backend::for_world(&world, &options), Backend::default());
+    }
+}
+
+#[test]
 fn large_worlds_without_instances_are_for_our_bvh_unless_embree_alone_can_do_what_is_asked() {
     let world = |triangles: usize, instances: usize| {
         let positions = vec![vec![Vec3::ZERO, Vec3::X, Vec3::Y]];

@@ -186,6 +186,15 @@ pub fn spheres(rng: &mut Rng, count: usize) -> Shape {
     Shape::Spheres((0..count).map(sphere).collect())
 }
 
+/// Spheres that are only moved, in a cube.
+pub fn moved_spheres(rng: &mut Rng, count: usize) -> Shape {
+    let sphere = |_| {
+        let radius = f64::from(rng.range(0.02, 0.5));
+        Sphere::at(rng.cube().as_dvec3(), radius).unwrap()
+    };
+    Shape::Spheres((0..count).map(sphere).collect())
+}
+
 /// Parts of spheres, cylinders and disks of all proportions in a cube.
 pub fn quadrics(rng: &mut Rng, count: usize) -> Shape {
     let quadric = |i: usize| {
@@ -285,6 +294,20 @@ fn degenerate(rng: &mut Rng) -> TriangleMesh {
     let flat = positions.len() as u32;
     positions.extend((0..60).map(|_| rng.cube() * Vec3::new(1.0, 1.0, 0.0) + Vec3::new(0.0, 0.0, 0.25)));
     indices.extend((0..20).map(|i| [flat + 3 * i, flat + 3 * i + 1, flat + 3 * i + 2]));
+    TriangleMesh::new(vec![positions], indices).unwrap()
+}
+
+/// The same triangle twice, others in a plane, and some without area.
+fn partly_degenerate(rng: &mut Rng) -> TriangleMesh {
+    let mut positions: Vec<Vec3> = (0..12).map(|_| rng.cube()).collect();
+    positions.extend((0..12).map(|_| rng.cube() * Vec3::new(1.0, 0.0, 1.0)));
+    let mut indices = vec![[0, 1, 2], [1, 2, 0], [3, 4, 4], [5, 5, 5]];
+    for i in 0..8 {
+        let (a, b) = (positions[i], positions[i + 4]);
+        positions.push(0.5 * (a + b));
+        indices.push([i as u32, i as u32 + 4, positions.len() as u32 - 1]);
+    }
+    indices.extend((0..8u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]));
     TriangleMesh::new(vec![positions], indices).unwrap()
 }
 
@@ -401,6 +424,22 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
                 (0..6).map(|_| fixed(place(rng, 0.5, 1.0))).collect::<Vec<_>>(),
             ),
         ),
+        (
+            "few triangles and spheres",
+            of_shapes(vec![
+                moved_spheres(rng, 6),
+                Shape::Mesh(soup(rng, 20, 1.0)),
+                Shape::Mesh(cube()),
+                moved_spheres(rng, 4),
+            ]),
+        ),
+        ("few spheres", of_shapes(vec![moved_spheres(rng, 12)])),
+        ("few huge triangles", of_mesh(mapped(&soup(rng, 30, 1.0), |p| p * 1e10))),
+        (
+            "few needles",
+            of_mesh(mapped(&soup(rng, 40, 1.0), |p| p * Vec3::new(1.0, 1e-4, 1.0))),
+        ),
+        ("few triangles, some without area", of_mesh(partly_degenerate(rng))),
     ]
 }
 
@@ -412,5 +451,7 @@ pub fn extreme() -> Vec<(&'static str, Arc<World>)> {
         ("soup times 2e17", scaled(soup(rng, 100, 0.3), 2e17)),
         ("ball times 1e-18", scaled(bumpy_ball(2), 1e-18)),
         ("ball times 1e-30", scaled(bumpy_ball(2), 1e-30)),
+        ("few triangles times 2e17", scaled(soup(rng, 30, 1.0), 2e17)),
+        ("few triangles times 1e-30", scaled(soup(rng, 30, 1.0), 1e-30)),
     ]
 }

@@ -158,6 +158,13 @@ impl Lanes<16> for Avx512 {
         with!(_mm512_mask_blend_ps(m, a, b))
     }
     #[inline(always)]
+    fn pick(self, from: &[f32; 8], at: __m512i) -> __m512 {
+        with!({
+            let from = _mm512_castps256_ps512(_mm256_loadu_ps(from.as_ptr()));
+            _mm512_permutexvar_ps(at, from)
+        })
+    }
+    #[inline(always)]
     fn splat_u(self, x: u32) -> __m512i {
         with!(_mm512_set1_epi32(x as i32))
     }
@@ -188,14 +195,11 @@ impl Lanes<16> for Avx512 {
     #[inline(always)]
     fn plane_distance(
         self,
-        planes: &BlockPlanes,
-        triangle: usize,
-        axes: [usize; 3],
-        origin: [&[f32; 16]; 3],
-        direction: [&[f32; 16]; 3],
+        normal: [f64; 3],
+        corner: [f64; 3],
+        origin: &[[f32; 16]; 3],
+        direction: &[[f32; 16]; 3],
     ) -> __m512 {
-        let normal = axes.map(|axis| planes.normal[axis][triangle]);
-        let corner = axes.map(|axis| planes.corner[axis][triangle]);
         with!({
             let low = _mm512_castps256_ps512(half_distance(corner, normal, origin, direction, 0));
             _mm512_insertf32x8::<1>(low, half_distance(corner, normal, origin, direction, 8))
@@ -209,20 +213,20 @@ impl Lanes<16> for Avx512 {
 fn half_distance(
     corner: [f64; 3],
     normal: [f64; 3],
-    origin: [&[f32; 16]; 3],
-    direction: [&[f32; 16]; 3],
+    origin: &[[f32; 16]; 3],
+    direction: &[[f32; 16]; 3],
     first: usize,
 ) -> __m256 {
     let wide = |row: &[f32; 16]| {
         // SAFETY: eight floats from 0 or 8 on, of sixteen.
         _mm512_cvtps_pd(unsafe { _mm256_loadu_ps(row.as_ptr().add(first)) })
     };
-    let height = |axis: usize| _mm512_sub_pd(_mm512_set1_pd(corner[axis]), wide(origin[axis]));
+    let height = |axis: usize| _mm512_sub_pd(_mm512_set1_pd(corner[axis]), wide(&origin[axis]));
     let dot = |x: __m512d, y: __m512d, z: __m512d| {
         let term = |axis: usize, x: __m512d| _mm512_mul_pd(_mm512_set1_pd(normal[axis]), x);
         _mm512_add_pd(_mm512_add_pd(term(0, x), term(1, y)), term(2, z))
     };
     let above = dot(height(0), height(1), height(2));
-    let along = dot(wide(direction[0]), wide(direction[1]), wide(direction[2]));
+    let along = dot(wide(&direction[0]), wide(&direction[1]), wide(&direction[2]));
     _mm512_cvtpd_ps(_mm512_div_pd(above, along))
 }

@@ -68,8 +68,8 @@ pub trait Interleaved: Kernel + Lanes<LANES> {
     /// one of them; if there is none, what was on top.
     fn spread<const ANY: bool>(self, node: &FixedNode, ray: Member, stack: &mut Stack, depth: usize) -> Top;
 
-    /// Which triangles of a block a ray meets, as [`Kernel::triangles`].
-    fn triangles_of(self, block: &FixedBlock, ray: Member) -> TriangleHits;
+    /// Which triangles of a block a ray meets, as [`Kernel::triangles`]; with `any` it does not matter where, nor are all named.
+    fn triangles_of(self, block: &FixedBlock, ray: Member, any: bool) -> TriangleHits;
 
     /// [`Trip::trace`] compiled for these instructions, as a function of its own: within a larger one it would get fewer registers.
     fn trip<const ANY: bool>(
@@ -318,7 +318,8 @@ impl<'a, 'b, K: Interleaved> Trip<'a, 'b, K> {
     #[inline(always)]
     fn block<const ANY: bool>(&self, block: &FixedBlock, mates: &mut Mates, lane: usize) -> bool {
         let ids = block.ids();
-        let hits = self.walk.kernel.triangles_of(block, Member { mates, lane });
+        let any = ANY && self.asked.filter.is_none();
+        let hits = self.walk.kernel.triangles_of(block, Member { mates, lane }, any);
         let mut rest = hits.mask;
         let mut found = false;
         while rest != 0 {

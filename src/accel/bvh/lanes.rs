@@ -40,6 +40,8 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn mask(self, bits: u32) -> Self::M;
     /// `b` where `m`, else `a`.
     fn blend(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
+    /// What each lane has chosen, by a number below 8.
+    fn pick(self, from: &[f32; 8], at: Self::U) -> Self::F;
     fn splat_u(self, x: u32) -> Self::U;
     fn load_u(self, x: &[u32; N]) -> Self::U;
     fn store_u(self, x: Self::U, to: &mut [u32; N]);
@@ -50,15 +52,14 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn none(self, a: Self::U) -> Self::M;
     /// The planes of the triangles of a block.
     fn planes(self, corners: &Corners) -> BlockPlanes;
-    /// The distances of the plane of one triangle, by the operations of [`Plane::distance`](super::triangle::Plane::distance),
-    /// rounded to single precision at the end. Origin and direction have their axes in the order of `axes`.
+    /// The distances of a plane with a normal and a corner, by the operations of [`Plane::distance`](super::triangle::Plane::distance),
+    /// rounded to single precision at the end.
     fn plane_distance(
         self,
-        planes: &BlockPlanes,
-        triangle: usize,
-        axes: [usize; 3],
-        origin: [&[f32; N]; 3],
-        direction: [&[f32; N]; 3],
+        normal: [f64; 3],
+        corner: [f64; 3],
+        origin: &[[f32; N]; 3],
+        direction: &[[f32; N]; 3],
     ) -> Self::F;
 }
 
@@ -68,8 +69,17 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
 pub struct BlockPlanes {
     /// See [`Plane::corner`](super::triangle::Plane::corner).
     pub corner: [[f64; TRIANGLES]; 3],
-    /// See [`Plane::normal`](super::triangle::Plane::normal). Its terms are the same for any cyclic order of axes.
+    /// See [`Plane::normal`](super::triangle::Plane::normal).
     pub normal: [[f64; TRIANGLES]; 3],
+}
+
+impl BlockPlanes {
+    /// The normal and the first corner of a triangle.
+    #[inline(always)]
+    pub fn of(&self, triangle: usize) -> [[f64; 3]; 2] {
+        let of = |[x, y, z]: &[[f64; TRIANGLES]; 3]| [x[triangle], y[triangle], z[triangle]];
+        [of(&self.normal), of(&self.corner)]
+    }
 }
 
 /// The lanes whose bits are set.

@@ -1,6 +1,7 @@
 //! Blocks of four triangles in struct-of-arrays form.
 
 use super::ray::LocalRay;
+use super::triangle::Plane;
 use crate::geometry::{GeometryId, HitPacket, TriangleMesh, World};
 use crate::math::{Bounds3, Vec3};
 
@@ -153,10 +154,17 @@ impl Block for FixedBlock {
 
     #[inline(always)]
     fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
-        Self {
-            corners: gather(triangles, step),
-            ids: BlockIds::new(world, triangles),
+        let corners = gather(triangles, step);
+        let mut ids = BlockIds::new(world, triangles);
+        for (lane, mask) in ids.mask.iter_mut().enumerate() {
+            // A triangle without area is never met.
+            *mask = if Plane::new(&corners.lane(lane)).has_area() {
+                *mask
+            } else {
+                0
+            };
         }
+        Self { corners, ids }
     }
 
     #[inline(always)]

@@ -2,6 +2,8 @@
 //! (`collapse`), or such nodes at once along a Morton curve (`linear`), over what `primitives` says; and one traversal (`traverse`) over a kernel of vector instructions that is
 //! chosen at run time (`tracing`, `kernel`, `avx2`).
 //!
+//! Of few primitives (`few`) no tree is asked: packets of rays are tested against all of them.
+//!
 //! It is watertight: `triangle` says how two triangles leave no gap at their edge, `ray` why no box is passed over whose
 //! triangle would be hit. All kernels, and all ways through a tree, give the same bits.
 
@@ -12,6 +14,7 @@ mod avx512;
 mod bins;
 mod build;
 mod collapse;
+mod few;
 mod interleave;
 mod item;
 mod kernel;
@@ -40,6 +43,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use self::few::Few;
 use self::kernel::Kernel;
 use self::query::{Asked, Query};
 use self::ray::{LocalRay, direction_scale};
@@ -56,6 +60,8 @@ struct Scene {
     top: GroupTrees,
     /// See [`FixedTree::expected_nodes`]; of the top level.
     expected_nodes: f64,
+    /// All that there is, if that is so little that no tree is asked.
+    few: Option<Few>,
     /// By [`GroupId`].
     groups: Vec<GroupTrees>,
     /// Of each geometry, whether hits on it are filtered.
@@ -98,6 +104,7 @@ impl Bvh {
             scene: Arc::new(Scene {
                 expected_nodes: top.fixed.as_ref().map_or(0.0, FixedTree::expected_nodes),
                 top,
+                few: Few::new(world),
                 groups,
                 filtered: world
                     .geometries()
@@ -108,6 +115,11 @@ impl Bvh {
             }),
             tracing: Tracing::detect(),
         }
+    }
+
+    /// Whether there are spheres in a world, among so few primitives that rays are tested against all of them.
+    pub fn has_spheres_among_few(world: &World) -> bool {
+        Few::new(world).is_some_and(|few| !few.balls.is_empty()) && Tracing::detect().is_exhaustive()
     }
 
     /// The same trees, traced in each way that this processor has, by name: instructions, then how rays go through the trees. All give
@@ -210,7 +222,7 @@ impl Accel for Bvh {
         AccelInfo {
             backend: Backend::Bvh,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            memory: self.scene.top.memory() + groups,
+            memory: self.scene.top.memory() + groups + self.scene.few.as_ref().map_or(0, Few::memory),
         }
     }
 }

@@ -7,6 +7,7 @@
 // Distances are written for the children that are visited only.
 #![allow(unsafe_code)]
 
+mod exhaustive;
 mod stack;
 mod triangles;
 

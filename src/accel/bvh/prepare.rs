@@ -159,12 +159,11 @@ impl<const N: usize> Prepared<N> {
     #[inline(always)]
     pub fn shear(&self, lane: usize) -> Shear {
         let axes = self.axes(lane);
-        let [x, y, z] = axes;
-        let turned = |rows: &[Row<N>; 3]| [rows[x][lane], rows[y][lane], rows[z][lane]];
+        let [x, y, _] = axes;
         Shear {
             axes,
-            origin: turned(&self.rays.origin),
-            direction: turned(&self.rays.direction),
+            origin: column(&self.rays.origin, lane),
+            direction: column(&self.rays.direction, lane),
             scale: column(&self.scale, lane),
             inverse: [self.inverse[x][lane], self.inverse[y][lane]],
         }

@@ -1,6 +1,7 @@
 //! A call's rays, put together to packets of rays that are likely to stay together.
 
 use super::Scene;
+use super::few::Few;
 use super::interleave::{self, Interleaved, Mates, Trip};
 use super::lanes::{Lanes, lanes_of};
 use super::order::{BATCH, Place, Room, rays_of_class, sort};
@@ -17,11 +18,18 @@ impl Scene {
     pub fn takes_packets(&self) -> bool {
         self.top.fixed.is_some() && self.top.moving.is_empty()
     }
+
+    /// All primitives, if to test them takes at most `tests` tests of triangles.
+    fn few_within(&self, tests: usize) -> Option<&Few> {
+        self.few.as_ref().filter(|few| few.tests() <= tests)
+    }
 }
 
 /// How the rays of a call are put together.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
+    /// Rays are tested against all primitives if that takes at most so many tests of triangles.
+    pub exhaustive: usize,
     /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
     pub as_they_come: bool,
     /// When the others go together: if one of these holds.
@@ -145,6 +153,14 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
         (packet, rest)
     }
 
+    /// Tests a packet against all there is; returns it, with the lanes that it left out.
+    #[inline(always)]
+    fn exhaust<const ANY: bool>(&self, few: &Few, rays: Rays<N>, lanes: u32) -> (Packet<'a, N>, u32) {
+        let mut packet = Packet::new(self.s, rays, self.asked);
+        let rest = packet.exhaust::<S, ANY>(self.s, few, lanes);
+        (packet, rest)
+    }
+
     /// Traces rays that have little in common.
     #[inline(always)]
     fn one_by_one<const ANY: bool>(
@@ -189,8 +205,10 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, filter);
     let mut room = Room::take();
-    if plan.as_they_come {
-        as_they_come(&call, packets, hits, &mut room.stack);
+    if let Some(few) = scene.few_within(plan.exhaustive) {
+        as_they_come(&call, Some(few), packets, hits, &mut room.stack);
+    } else if plan.as_they_come {
+        as_they_come(&call, None, packets, hits, &mut room.stack);
     } else if packets.len() <= plan.few_packets || !plan.is_together(kernel, scene, tree, packets) {
         let Room { stack, interleave, .. } = &mut *room;
         call.one_by_one::<false>(packets, (stack, interleave), |mates| {
@@ -213,13 +231,17 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
 #[inline(always)]
 fn as_they_come<S: Lanes<N>, K: Interleaved, const N: usize>(
     call: &Call<'_, S, K, N>,
+    few: Option<&Few>,
     packets: &[RayPacket],
     hits: &mut [HitPacket],
     stack: &mut [u64; STACK],
 ) {
     for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
         let (rays, lanes) = neighbours(given);
-        let (packet, rest) = call.trace::<false>(rays, lanes, stack);
+        let (packet, rest) = match few {
+            Some(few) => call.exhaust::<false>(few, rays, lanes),
+            None => call.trace::<false>(rays, lanes, stack),
+        };
         for (i, hits) in hits.iter_mut().enumerate() {
             let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
             *hits = HitPacket {
@@ -296,6 +318,23 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
         classes,
         places,
     } = &mut *room;
+    if let Some(few) = scene.few_within(plan.exhaustive) {
+        for given in packets.chunks_mut(N / LANES) {
+            let (rays, lanes) = neighbours(given);
+            let (packet, rest) = call.exhaust::<true>(few, rays, lanes);
+            let mut found = packet.hits(s) & lanes;
+            for lane in lanes_of(rest) {
+                if let Some(query) = call.alone::<true>(&given[lane / LANES], lane % LANES, stack) {
+                    found |= u32::from(query.is_hit()) << lane;
+                }
+            }
+            for lane in lanes_of(found) {
+                given[lane / LANES].tfar[lane % LANES] = f32::NEG_INFINITY;
+            }
+        }
+        room.put();
+        return;
+    }
     for packets in packets.chunks_mut(BATCH / LANES) {
         if !plan.is_together(kernel, scene, tree, packets) {
             let mut found = [0u8; BATCH / LANES];

@@ -5,6 +5,8 @@ use super::Scene;
 use super::avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 use super::avx512::Avx512;
+#[cfg(target_arch = "x86_64")]
+use super::few::MOST_TESTS;
 use super::kernel::Portable;
 #[cfg(target_arch = "x86_64")]
 use super::stream::{Plan, Together};
@@ -33,6 +35,8 @@ enum Instructions {
 enum Way {
     /// By kind of ray and size of the tree, as measured.
     Usual,
+    /// In packets of neighbours, against all primitives if they are few.
+    Exhaustive,
     /// In packets: neighbours, from the camera, else rays that were sorted.
     Packets,
     /// Sorted, then one by one, several being on their way.
@@ -82,6 +86,15 @@ const SHADOWS: &[Together] = &[
     },
 ];
 
+/// Tests of triangles at most that rays are done with sooner than they go through a tree, as measured: of camera rays, which go together
+/// well.
+#[cfg(target_arch = "x86_64")]
+const FEW_FOR_CAMERA: usize = 20;
+
+/// The same of shadow rays.
+#[cfg(target_arch = "x86_64")]
+const FEW_FOR_SHADOWS: usize = 48;
+
 /// All rays do.
 #[cfg(target_arch = "x86_64")]
 const ALL: &[Together] = &[Together {
@@ -103,22 +116,28 @@ impl Tracing {
         }
     }
 
+    /// Whether rays are tested against all primitives where these are few.
+    pub fn is_exhaustive(self) -> bool {
+        !matches!(self.instructions, Instructions::Portable(_))
+    }
+
     /// All that the processor has, by name.
     pub fn all() -> Vec<(String, Self)> {
         let ways = |instructions: Instructions| {
             let ways: &[Way] = match instructions {
                 Instructions::Portable(_) => &[Way::Single],
                 #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2(_) => &[Way::Packets, Way::Interleaved, Way::Single],
+                Instructions::Avx2(_) => &[Way::Exhaustive, Way::Packets, Way::Interleaved, Way::Single],
                 // A ray by itself has no use for as many lanes.
                 #[cfg(target_arch = "x86_64")]
-                Instructions::Avx512(..) => &[Way::Packets, Way::Interleaved],
+                Instructions::Avx512(..) => &[Way::Exhaustive, Way::Packets, Way::Interleaved],
             };
             ways.iter().map(move |&way| (instructions, way))
         };
         let named = |(instructions, way): (Instructions, Way)| {
             let name = match way {
                 Way::Usual => instructions.name().to_owned(),
+                Way::Exhaustive => format!("{} exhaustive", instructions.name()),
                 Way::Packets => format!("{} packets", instructions.name()),
                 Way::Interleaved => format!("{} interleaved", instructions.name()),
                 Way::Single => format!("{} single", instructions.name()),
@@ -132,11 +151,17 @@ impl Tracing {
     fn plan(self, kind: RayKind) -> Plan {
         let together = match self.way {
             Way::Usual if kind == RayKind::Shadow => SHADOWS,
-            Way::Usual => BOUNCES,
+            Way::Usual | Way::Exhaustive => BOUNCES,
             Way::Packets => ALL,
             Way::Interleaved | Way::Single => &[],
         };
         Plan {
+            exhaustive: match self.way {
+                Way::Usual if kind == RayKind::Camera => FEW_FOR_CAMERA,
+                Way::Usual if kind == RayKind::Shadow => FEW_FOR_SHADOWS,
+                Way::Usual | Way::Exhaustive => MOST_TESTS,
+                Way::Packets | Way::Interleaved | Way::Single => 0,
+            },
             as_they_come: kind == RayKind::Camera && matches!(self.way, Way::Usual | Way::Packets),
             together,
             few_packets: if self.way == Way::Usual { FEW_PACKETS } else { 0 },

@@ -22,9 +22,9 @@ use super::ray::{LEAST_SLOPE, MARGIN};
 pub struct Shear {
     /// Which axis of the ray's space each is.
     pub axes: [usize; 3],
-    /// Origin.
+    /// Origin, by the axes of the ray's space.
     pub origin: [f32; 3],
-    /// Direction.
+    /// Direction, by the axes of the ray's space.
     pub direction: [f32; 3],
     /// Direction x and y over z, and 1 over z.
     pub scale: [f32; 3],
@@ -32,7 +32,7 @@ pub struct Shear {
     pub inverse: [f32; 2],
 }
 
-/// What the kernels ask of a ray, by the axes of its [`Shear`].
+/// What the kernels ask of a ray.
 pub trait Shears: Copy {
     /// See [`Shear::axes`].
     fn axis(self, i: usize) -> usize;
@@ -92,8 +92,8 @@ impl Shear {
         let axes = [x, y, z];
         Self {
             axes,
-            origin: axes.map(|axis| origin[axis]),
-            direction: axes.map(|axis| direction[axis]),
+            origin,
+            direction,
             scale: [
                 direction[x] / direction[z],
                 direction[y] / direction[z],
@@ -113,7 +113,7 @@ impl Shear {
         if !sheared.is_origin_inside() {
             return None;
         }
-        let plane = Plane::new(corners, self.axes);
+        let plane = Plane::new(corners);
         let t = plane.distance(self);
         let [enter, leave] = match self.range(corners, sheared.z) {
             range if range[0] <= range[1] => range,
@@ -133,7 +133,10 @@ impl Shear {
     /// triangle only by rounding may miss its box.
     #[inline(always)]
     fn range(&self, corners: &[[f32; 3]; 3], z: [f32; 3]) -> [f32; 2] {
-        let along = |i: usize| corners.map(|corner| (corner[self.axes[i]] - self.origin[i]) * self.inverse[i]);
+        let along = |i: usize| {
+            let axis = self.axes[i];
+            corners.map(|corner| (corner[axis] - self.origin[axis]) * self.inverse[i])
+        };
         let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (along(0), along(1), z);
         let enter = |a, b, c| least(least(a, b), c);
         let leave = |a, b, c| greatest(greatest(a, b), c);
@@ -151,7 +154,7 @@ impl Shear {
         let share = 0.75 * f64::from(MARGIN);
         let most = |v: [f64; 3]| v[0].max(v[1]).max(v[2]);
         let rows = self.axes.map(|axis| corners.map(|corner| f64::from(corner[axis])));
-        let origin = self.origin.map(f64::from);
+        let origin = self.axes.map(|axis| f64::from(self.origin[axis]));
         let size = rows.map(|row| most(row.map(f64::abs)));
         let inverse = [self.inverse[0], self.inverse[1], self.scale[2]].map(f64::from);
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -181,11 +184,12 @@ impl Shear {
             y: [0.0; 3],
             z: [0.0; 3],
         };
+        let [x, y, z] = self.axes;
         for (i, corner) in corners.iter().enumerate() {
-            let z = corner[self.axes[2]] - self.origin[2];
-            result.x[i] = (corner[self.axes[0]] - self.origin[0]) - self.scale[0] * z;
-            result.y[i] = (corner[self.axes[1]] - self.origin[1]) - self.scale[1] * z;
-            result.z[i] = self.scale[2] * z;
+            let depth = corner[z] - self.origin[z];
+            result.x[i] = (corner[x] - self.origin[x]) - self.scale[0] * depth;
+            result.y[i] = (corner[y] - self.origin[y]) - self.scale[1] * depth;
+            result.z[i] = self.scale[2] * depth;
         }
         result
     }
@@ -247,18 +251,17 @@ impl Sheared {
 }
 
 /// The plane of a triangle.
-struct Plane {
+pub struct Plane {
     /// One of its corners.
-    corner: [f64; 3],
+    pub corner: [f64; 3],
     /// Twice its area, across it.
-    normal: [f64; 3],
+    pub normal: [f64; 3],
 }
 
 impl Plane {
-    /// With its axes in the order of `axes`.
     #[inline(always)]
-    fn new(corners: &[[f32; 3]; 3], axes: [usize; 3]) -> Self {
-        let [a, b, c] = corners.map(|corner| axes.map(|axis| f64::from(corner[axis])));
+    pub fn new(corners: &[[f32; 3]; 3]) -> Self {
+        let [a, b, c] = corners.map(|corner| corner.map(f64::from));
         let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let f = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
         Self {
@@ -281,7 +284,9 @@ impl Plane {
         height / ((n[0] * dx + n[1] * dy) + n[2] * dz)
     }
 
-    fn has_area(&self) -> bool {
+    /// Whether the triangle has any.
+    #[inline(always)]
+    pub fn has_area(&self) -> bool {
         self.normal != [0.0; 3]
     }
 }

@@ -104,6 +104,10 @@ impl Lanes<8> for Avx2 {
         with!(_mm256_blendv_ps(a, b, m))
     }
     #[inline(always)]
+    fn pick(self, from: &[f32; 8], at: __m256i) -> __m256 {
+        with!(_mm256_permutevar8x32_ps(_mm256_loadu_ps(from.as_ptr()), at))
+    }
+    #[inline(always)]
     fn splat_u(self, x: u32) -> __m256i {
         with!(_mm256_set1_epi32(x as i32))
     }
@@ -137,14 +141,11 @@ impl Lanes<8> for Avx2 {
     #[inline(always)]
     fn plane_distance(
         self,
-        planes: &BlockPlanes,
-        triangle: usize,
-        axes: [usize; 3],
-        origin: [&[f32; 8]; 3],
-        direction: [&[f32; 8]; 3],
+        normal: [f64; 3],
+        corner: [f64; 3],
+        origin: &[[f32; 8]; 3],
+        direction: &[[f32; 8]; 3],
     ) -> __m256 {
-        let normal = axes.map(|axis| planes.normal[axis][triangle]);
-        let corner = axes.map(|axis| planes.corner[axis][triangle]);
         with!(_mm256_set_m128(
             half_distance(corner, normal, origin, direction, 4),
             half_distance(corner, normal, origin, direction, 0)
@@ -152,11 +153,11 @@ impl Lanes<8> for Avx2 {
     }
 }
 
-/// First corners and normals of the triangles of a block, with their axes in the order of `axes`.
+/// First corners and normals of the triangles of a block.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-pub fn planes(corners: &Corners, axes: [usize; 3]) -> (Wide, Wide) {
-    let [a, b, c] = [wide(corners, 0, axes), wide(corners, 1, axes), wide(corners, 2, axes)];
+pub fn planes(corners: &Corners) -> (Wide, Wide) {
+    let [a, b, c] = [wide(corners, 0), wide(corners, 1), wide(corners, 2)];
     let (e, f) = (minus(b, a), minus(c, a));
     let normal = [product(e, f, 1, 2), product(e, f, 2, 0), product(e, f, 0, 1)];
     (a, normal)
@@ -164,9 +165,8 @@ pub fn planes(corners: &Corners, axes: [usize; 3]) -> (Wide, Wide) {
 
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn wide(corners: &Corners, corner: usize, axes: [usize; 3]) -> Wide {
-    let rows = &corners.0[corner];
-    let [x, y, z]: [&[f32; TRIANGLES]; 3] = [&rows[axes[0]], &rows[axes[1]], &rows[axes[2]]];
+fn wide(corners: &Corners, corner: usize) -> Wide {
+    let [x, y, z]: &[[f32; TRIANGLES]; 3] = &corners.0[corner];
     // SAFETY: four floats each, aligned to 16 bytes as rows of `Corners` are.
     let rows = unsafe {
         [
@@ -198,7 +198,7 @@ fn product(e: Wide, f: Wide, i: usize, j: usize) -> __m256d {
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn block_planes(corners: &Corners) -> BlockPlanes {
-    let (corner, normal) = planes(corners, [0, 1, 2]);
+    let (corner, normal) = planes(corners);
     let mut planes = BlockPlanes {
         corner: [[0.0; TRIANGLES]; 3],
         normal: [[0.0; TRIANGLES]; 3],
@@ -219,20 +219,20 @@ fn block_planes(corners: &Corners) -> BlockPlanes {
 fn half_distance(
     corner: [f64; 3],
     normal: [f64; 3],
-    origin: [&[f32; 8]; 3],
-    direction: [&[f32; 8]; 3],
+    origin: &[[f32; 8]; 3],
+    direction: &[[f32; 8]; 3],
     first: usize,
 ) -> __m128 {
     let wide = |row: &[f32; 8]| {
         // SAFETY: four floats from 0 or 4 on, of eight.
         _mm256_cvtps_pd(unsafe { _mm_loadu_ps(row.as_ptr().add(first)) })
     };
-    let height = |axis: usize| _mm256_sub_pd(_mm256_set1_pd(corner[axis]), wide(origin[axis]));
+    let height = |axis: usize| _mm256_sub_pd(_mm256_set1_pd(corner[axis]), wide(&origin[axis]));
     let dot = |x: __m256d, y: __m256d, z: __m256d| {
         let term = |axis: usize, x: __m256d| _mm256_mul_pd(_mm256_set1_pd(normal[axis]), x);
         _mm256_add_pd(_mm256_add_pd(term(0, x), term(1, y)), term(2, z))
     };
     let above = dot(height(0), height(1), height(2));
-    let along = dot(wide(direction[0]), wide(direction[1]), wide(direction[2]));
+    let along = dot(wide(&direction[0]), wide(&direction[1]), wide(&direction[2]));
     _mm256_cvtpd_ps(_mm256_div_pd(above, along))
 }

@@ -94,7 +94,7 @@ impl Kernel for Avx2 {
 
     #[inline(always)]
     fn triangles(self, corners: &Corners, ids: &BlockIds, mask: u32, shear: &Shear, range: [f32; 2]) -> TriangleHits {
-        triangles::triangles(self, corners, ids, mask, shear, range)
+        triangles::triangles(self, corners, ids, mask, shear, range, false)
     }
 
     #[inline(always)]

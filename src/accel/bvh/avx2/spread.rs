@@ -40,10 +40,18 @@ impl Interleaved for Avx2 {
     }
 
     #[inline(always)]
-    fn triangles_of(self, block: &FixedBlock, ray: Member) -> TriangleHits {
+    fn triangles_of(self, block: &FixedBlock, ray: Member, any: bool) -> TriangleHits {
         let (rays, lane) = (&ray.mates.prepared.rays, ray.lane % LANES);
         let range = [rays.tnear[lane], rays.tfar[lane]];
-        triangles(self, block.fixed_corners(), block.ids(), rays.mask[lane], ray, range)
+        triangles(
+            self,
+            block.fixed_corners(),
+            block.ids(),
+            rays.mask[lane],
+            ray,
+            range,
+            any,
+        )
     }
 
     #[inline(always)]

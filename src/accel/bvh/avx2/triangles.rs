@@ -10,7 +10,8 @@ use crate::accel::bvh::triangle::{Shear, Shears};
 /// A vector for each corner of four triangles.
 type Rows = [__m128; 3];
 
-/// See [`Kernel::triangles`](crate::accel::bvh::kernel::Kernel::triangles).
+/// See [`Kernel::triangles`](crate::accel::bvh::kernel::Kernel::triangles). With `any`, triangles have area, and it matters only whether one
+/// is met, not where.
 // Not a function of its own, in which fewer registers could be used.
 #[inline(always)]
 pub fn triangles(
@@ -20,6 +21,7 @@ pub fn triangles(
     mask: u32,
     ray: impl Shears,
     range: [f32; 2],
+    any: bool,
 ) -> TriangleHits {
     // SAFETY: `_proof` is that the processor has AVX2 and FMA; four numbers are loaded from and stored to rows that are aligned to as much.
     unsafe {
@@ -55,7 +57,7 @@ pub fn triangles(
             or(_mm_cmpngt_ps(size(u), zero), _mm_cmpngt_ps(size(v), zero)),
             _mm_cmpngt_ps(size(w), zero),
         );
-        distances(corners, rows, possible, unsure, ray, range)
+        distances(corners, rows, possible, unsure, ray, range, any)
     }
 }
 
@@ -68,6 +70,7 @@ unsafe fn distances(
     unsure: __m128,
     ray: impl Shears,
     range: [f32; 2],
+    any: bool,
 ) -> TriangleHits {
     // SAFETY: the processor has AVX2 and FMA, as the caller knows; what is stored to is as large and as aligned as that needs.
     unsafe {
@@ -88,6 +91,16 @@ unsafe fn distances(
         };
         if possible == 0 {
             return hits;
+        }
+        if any {
+            // Wherever in its box a triangle is met, that is in the range.
+            let inside = _mm_and_ps(_mm_cmplt_ps(tnear, first), _mm_cmple_ps(last, tfar));
+            let certain = possible & _mm_movemask_ps(_mm_andnot_ps(or(unsure, beside), inside)) as u32;
+            if certain != 0 {
+                hits.mask = certain;
+                hits.t = [range[1]; LANES];
+                return hits;
+            }
         }
         let planes = plane_distances(corners, ray);
         let parallel = _mm_cmpnlt_ps(size(planes), _mm_set1_ps(f32::INFINITY));
@@ -121,7 +134,8 @@ fn size(v: __m128) -> __m128 {
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn offsets(corners: &Corners, ray: impl Shears, axis: usize) -> Rows {
-    let (row, origin) = (ray.axis(axis), _mm_set1_ps(ray.origin(axis)));
+    let row = ray.axis(axis);
+    let origin = _mm_set1_ps(ray.origin(row));
     let [a, b, c]: [&[f32; LANES]; 3] = [&corners.0[0][row], &corners.0[1][row], &corners.0[2][row]];
     // SAFETY: four floats each, aligned to 16 bytes as rows of `Corners` are.
     let rows = unsafe {
@@ -167,7 +181,7 @@ fn greatest([a, b, c]: Rows) -> __m128 {
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn plane_distances(corners: &Corners, ray: impl Shears) -> __m128 {
-    let (corner, normal) = lanes::planes(corners, [ray.axis(0), ray.axis(1), ray.axis(2)]);
+    let (corner, normal) = lanes::planes(corners);
     let origin = [ray.origin(0), ray.origin(1), ray.origin(2)].map(f64::from);
     let direction = [ray.direction(0), ray.direction(1), ray.direction(2)].map(f64::from);
     let height = [

@@ -165,11 +165,11 @@ impl Shears for Member<'_> {
     }
     #[inline(always)]
     fn origin(self, i: usize) -> f32 {
-        self.mates.prepared.rays.origin[self.axis(i)][self.lane % LANES]
+        self.mates.prepared.rays.origin[i][self.lane % LANES]
     }
     #[inline(always)]
     fn direction(self, i: usize) -> f32 {
-        self.mates.prepared.rays.direction[self.axis(i)][self.lane % LANES]
+        self.mates.prepared.rays.direction[i][self.lane % LANES]
     }
     #[inline(always)]
     fn scale(self, i: usize) -> f32 {
