@@ -328,7 +328,7 @@ fn few_spheres_are_for_our_bvh_where_it_tests_many_at_a_time() {
     expect(vec![worlds::moved_spheres(rng, 12), Shape::Mesh(worlds::cube())], ours);
     expect(vec![Shape::Mesh(worlds::cube())], Backend::default());
     expect(vec![worlds::moved_spheres(rng, 33)], Backend::default());
-    expect(vec![worlds::spheres(rng, 2)], Backend::default());
+    expect(vec![worlds::spheres(rng, 2)], ours);
     expect(vec![worlds::quadrics(rng, 2)], Backend::default());
     let unmoved: &dyn Fn(Vec3) -> Vec3 = &|p| p;
     let moving = worlds::moving(&worlds::cube(), &[unmoved, &|p| 2.0 * p]);

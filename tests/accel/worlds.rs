@@ -433,7 +433,7 @@ pub fn all() -> Vec<(&'static str, Arc<World>)> {
                 moved_spheres(rng, 4),
             ]),
         ),
-        ("few spheres", of_shapes(vec![moved_spheres(rng, 12)])),
+        ("few spheres", of_shapes(vec![moved_spheres(rng, 12), spheres(rng, 12)])),
         ("few huge triangles", of_mesh(mapped(&soup(rng, 30, 1.0), |p| p * 1e10))),
         (
             "few needles",

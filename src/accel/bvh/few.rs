@@ -3,7 +3,7 @@
 
 use super::leaf::Triangle;
 use super::triangle::Plane;
-use crate::geometry::{Opacity, Shape, World};
+use crate::geometry::{Opacity, Shape, Sphere, World};
 
 /// What testing a ray against all primitives costs at most for it to be worth it, as measured, in tests of triangles: deep bounces cross
 /// over at some 100, first ones at 60.
@@ -28,12 +28,10 @@ pub struct Facet {
     pub ids: [u32; 2],
 }
 
-/// A sphere that is only moved from the origin, not stretched.
+/// A sphere.
 pub struct Ball {
-    /// Center.
-    pub center: [f64; 3],
-    /// Radius.
-    pub radius: f64,
+    /// The sphere.
+    pub sphere: Sphere,
     /// Mask.
     pub mask: u32,
     /// Geometry and primitive.
@@ -71,14 +69,11 @@ impl Few {
                         .extend(triangles.filter_map(|triangle| Facet::new(triangle, geometry.mask)));
                 }
                 Shape::Spheres(spheres) => {
-                    for (i, sphere) in spheres.iter().enumerate() {
-                        few.balls.push(Ball {
-                            center: sphere.only_moved_by()?.to_array(),
-                            radius: sphere.radius(),
-                            mask: geometry.mask,
-                            ids: [id.0, i as u32],
-                        });
-                    }
+                    few.balls.extend((0..).zip(spheres).map(|(i, sphere)| Ball {
+                        sphere: sphere.clone(),
+                        mask: geometry.mask,
+                        ids: [id.0, i],
+                    }));
                 }
                 _ => return None,
             }

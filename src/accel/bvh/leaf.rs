@@ -1,9 +1,9 @@
 //! Blocks of four triangles in struct-of-arrays form.
 
 use super::ray::LocalRay;
-use super::triangle::Plane;
+use super::triangle::{greatest, least};
 use crate::geometry::{GeometryId, HitPacket, TriangleMesh, World};
-use crate::math::{Bounds3, Vec3};
+use crate::math::Bounds3;
 
 /// Triangles in a block.
 pub const LANES: usize = 4;
@@ -40,14 +40,19 @@ impl Corners {
         self.0.map(|corner| corner.map(|axis| axis[lane]))
     }
 
-    /// A box around the first of the triangles.
+    /// A box around the triangles of all lanes.
     #[inline(always)]
-    fn bounds(&self, triangles: usize) -> Bounds3 {
+    fn bounds(&self) -> Bounds3 {
         let mut bounds = Bounds3::EMPTY;
-        for [x, y, z] in &self.0 {
-            for ((&x, &y), &z) in x.iter().zip(y).zip(z).take(triangles) {
-                bounds = bounds.grow(Vec3::new(x, y, z));
+        for axis in 0..3 {
+            let [a, b, c] = [&self.0[0][axis], &self.0[1][axis], &self.0[2][axis]];
+            let (mut low, mut high) = ([0.0; LANES], [0.0; LANES]);
+            for lane in 0..LANES {
+                low[lane] = least(least(a[lane], b[lane]), c[lane]);
+                high[lane] = greatest(greatest(a[lane], b[lane]), c[lane]);
             }
+            bounds.min[axis] = least(least(low[0], low[1]), least(low[2], low[3]));
+            bounds.max[axis] = greatest(greatest(high[0], high[1]), greatest(high[2], high[3]));
         }
         bounds
     }
@@ -129,8 +134,8 @@ pub trait Block: Send + Sync {
     /// Of at most four triangles of meshes, from time step `step` on.
     fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self;
 
-    /// A box around the first of its triangles.
-    fn bounds(&self, triangles: usize) -> Self::Bounds;
+    /// A box around its triangles.
+    fn bounds(&self) -> Self::Bounds;
 
     /// The corners at a fraction of the time segment, which may be put into `scratch`.
     fn corners<'a>(&'a self, fraction: f32, scratch: &'a mut Corners) -> &'a Corners;
@@ -154,22 +159,15 @@ impl Block for FixedBlock {
 
     #[inline(always)]
     fn new(world: &World, triangles: &[Triangle<'_>], step: usize) -> Self {
-        let corners = gather(triangles, step);
-        let mut ids = BlockIds::new(world, triangles);
-        for (lane, mask) in ids.mask.iter_mut().enumerate() {
-            // A triangle without area is never met.
-            *mask = if Plane::new(&corners.lane(lane)).has_area() {
-                *mask
-            } else {
-                0
-            };
+        Self {
+            corners: gather(triangles, step),
+            ids: BlockIds::new(world, triangles),
         }
-        Self { corners, ids }
     }
 
     #[inline(always)]
-    fn bounds(&self, triangles: usize) -> Bounds3 {
-        self.corners.bounds(triangles)
+    fn bounds(&self) -> Bounds3 {
+        self.corners.bounds()
     }
 
     #[inline(always)]
@@ -198,8 +196,8 @@ impl Block for MovingBlock {
         }
     }
 
-    fn bounds(&self, triangles: usize) -> [Bounds3; 2] {
-        [&self.start, &self.end].map(|corners| corners.bounds(triangles))
+    fn bounds(&self) -> [Bounds3; 2] {
+        [self.start.bounds(), self.end.bounds()]
     }
 
     #[inline(always)]
@@ -214,10 +212,12 @@ impl Block for MovingBlock {
     }
 }
 
+/// The corners of triangles; lanes without one have those of the first.
 #[inline(always)]
 fn gather(triangles: &[Triangle<'_>], step: usize) -> Corners {
     let mut corners = Corners::scratch();
-    for (lane, &(_, mesh, triangle)) in triangles.iter().enumerate() {
+    for lane in 0..LANES {
+        let (_, mesh, triangle) = triangles[if lane < triangles.len() { lane } else { 0 }];
         corners.set(lane, mesh, triangle, step);
     }
     corners

@@ -48,10 +48,12 @@ impl Format {
         }
     }
 
+    #[inline]
     fn index(self, key: Key) -> u32 {
         (key & ((1 << self.index_bits) - 1)) as u32
     }
 
+    #[inline]
     fn code(self, key: Key) -> u64 {
         key >> self.index_bits
     }
@@ -104,16 +106,16 @@ impl Curve {
         let bounds = primitives.bounds(index);
         let cell = (bounds.min + bounds.max - self.low) * self.scale + TO_INTEGER;
         let mask = (1 << self.format.cell_bits) - 1;
-        let [x, y, z] = cell.to_array().map(|x| spread(x.to_bits() & mask));
-        let code = x | y << 1 | z << 2;
+        let along = |x: f32| spread(x.to_bits() & mask);
+        let code = along(cell.x) | along(cell.y) << 1 | along(cell.z) << 2;
         code << self.format.index_bits | Key::from(index)
     }
 }
 
 /// Bits that are spread at a time.
-const SPREAD_BITS: u32 = 7;
+const SPREAD_BITS: u32 = 11;
 
-/// Numbers of seven bits with two zeros between each.
+/// Numbers of eleven bits with two zeros between each.
 const SPREAD: [u32; 1 << SPREAD_BITS] = {
     let mut table = [0; 1 << SPREAD_BITS];
     let mut x = 0;
@@ -135,7 +137,7 @@ fn spread(x: u32) -> u64 {
         let bits = x >> (SPREAD_BITS * index) & ((1 << SPREAD_BITS) - 1);
         u64::from(SPREAD[bits as usize]) << (3 * SPREAD_BITS * index)
     };
-    part(0) | part(1) | part(2)
+    part(0) | part(1)
 }
 
 /// Makes keys and sorts them: a chunk at a time they are dealt out by their highest bits, then each bucket is sorted.
@@ -294,7 +296,8 @@ impl<P: Primitives> Builder<'_, P> {
             let Range { start, end } = parts.range(part);
             let middle = start + self.divide(&mut keys[start..end], &mut parts.division[part]);
             let division = parts.division[part];
-            let urgencies = [start..middle, middle..end].map(|part| self.urgency(&keys[part], division));
+            let (first, second) = keys[start..end].split_at(middle - start);
+            let urgencies = [self.urgency(first, division), self.urgency(second, division)];
             parts.split(part, middle, urgencies);
         }
         let is_parallel = keys.len() > CHUNK;
@@ -335,10 +338,8 @@ impl<P: Primitives> Builder<'_, P> {
 
     /// Where codes first differ; if two leaves do, the first place where these have room.
     fn divide(&self, keys: &mut [Key], division: &mut Division) -> usize {
-        let differing = |keys: &[Key], places: [usize; 2]| {
-            let [a, b] = places.map(|place| self.format.code(keys[place]));
-            a ^ b
-        };
+        let differing =
+            |keys: &[Key], places: [usize; 2]| self.format.code(keys[places[0]]) ^ self.format.code(keys[places[1]]);
         if keys.len() > LANES && keys.len() <= 2 * LANES {
             let places = keys.len() - LANES..=LANES;
             let middle = places.max_by_key(|&place| differing(keys, [place - 1, place]));

@@ -147,13 +147,13 @@ impl Shape {
         self.topology.blocks.par_iter().with_min_len(256).map(of_leaf).collect()
     }
 
-    /// The block of a leaf, and how many triangles are in it.
+    /// The block of a leaf.
     #[inline(always)]
-    fn block<B: Block>(&self, leaf: &Leaf, world: &World, triangles: &Triangles<'_>, step: usize) -> (B, usize) {
+    fn block<B: Block>(&self, leaf: &Leaf, world: &World, triangles: &Triangles<'_>, step: usize) -> B {
         let in_leaf = &self.order[leaf.range()];
         let mut indices = [in_leaf[0]; LANES];
         indices[..in_leaf.len()].copy_from_slice(in_leaf);
-        indices.sort_unstable();
+        sort(&mut indices);
         // Fragments of one triangle may share a leaf.
         let mut members = [triangles.find(indices[0]); LANES];
         let mut count = 1;
@@ -163,7 +163,7 @@ impl Shape {
                 count += 1;
             }
         }
-        (B::new(world, &members[..count], step), count)
+        B::new(world, &members[..count], step)
     }
 
     /// The blocks of its leaves.
@@ -171,7 +171,7 @@ impl Shape {
         let leaves = self.topology.blocks.par_iter().with_min_len(256);
         let mut blocks = vec_in_large_pages(leaves.len());
         leaves
-            .map(|leaf| self.block(leaf, world, triangles, 0).0)
+            .map(|leaf| self.block(leaf, world, triangles, 0))
             .collect_into_vec(&mut blocks);
         blocks
     }
@@ -188,12 +188,21 @@ impl Shape {
         let mut bounds = vec_in_large_pages(leaves.len());
         bounds.resize(leaves.len(), B::NOTHING);
         let block = |(leaf, bounds): (&Leaf, &mut B::Bounds)| {
-            let (block, count): (B, usize) = self.block(leaf, world, triangles, step);
-            *bounds = block.bounds(count);
+            let block: B = self.block(leaf, world, triangles, step);
+            *bounds = block.bounds();
             block
         };
         leaves.zip(&mut bounds).map(block).collect_into_vec(&mut blocks);
         (blocks, bounds)
+    }
+}
+
+/// Sorts four numbers without a branch, which in so short a list could not be predicted.
+#[inline(always)]
+fn sort(numbers: &mut [u32; LANES]) {
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        let (a, b) = (numbers[i], numbers[j]);
+        (numbers[i], numbers[j]) = (a.min(b), a.max(b));
     }
 }
 

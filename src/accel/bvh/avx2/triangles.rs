@@ -5,13 +5,13 @@ use std::arch::x86_64::*;
 use super::{Aligned, Avx2, Wide, lanes};
 use crate::accel::bvh::kernel::TriangleHits;
 use crate::accel::bvh::leaf::{BlockIds, Corners, LANES};
-use crate::accel::bvh::triangle::{Shear, Shears};
+use crate::accel::bvh::triangle::{Plane, Shear, Shears};
 
 /// A vector for each corner of four triangles.
 type Rows = [__m128; 3];
 
-/// See [`Kernel::triangles`](crate::accel::bvh::kernel::Kernel::triangles). With `any`, triangles have area, and it matters only whether one
-/// is met, not where.
+/// See [`Kernel::triangles`](crate::accel::bvh::kernel::Kernel::triangles). With `any` it matters only whether one is met, not
+/// where.
 // Not a function of its own, in which fewer registers could be used.
 #[inline(always)]
 pub fn triangles(
@@ -96,8 +96,10 @@ unsafe fn distances(
             // Wherever in its box a triangle is met, that is in the range.
             let inside = _mm_and_ps(_mm_cmplt_ps(tnear, first), _mm_cmple_ps(last, tfar));
             let certain = possible & _mm_movemask_ps(_mm_andnot_ps(or(unsure, beside), inside)) as u32;
-            if certain != 0 {
-                hits.mask = certain;
+            let first = certain.trailing_zeros() as usize;
+            // Without area no ray meets it, though rounding may seem to say so.
+            if certain != 0 && Plane::new(&corners.lane(first % LANES)).has_area() {
+                hits.mask = 1 << first;
                 hits.t = [range[1]; LANES];
                 return hits;
             }

@@ -4,7 +4,7 @@ use super::Packet;
 use super::triangles::{Facet, FacetIds};
 use crate::accel::bvh::few::{self, Ball, Few};
 use crate::accel::bvh::lanes::Lanes;
-use crate::accel::bvh::prepare::Row;
+use crate::accel::bvh::prepare::{Rays, Row};
 use crate::accel::bvh::query::Candidate;
 use crate::geometry::{HitPacket, line_roots_or_nan};
 use crate::math::DVec3;
@@ -39,6 +39,11 @@ impl<S: Lanes<N>, const N: usize> Facet<S, N> for FewFacet<'_, S::F, S::U> {
     #[inline(always)]
     fn corners(&self) -> [[f32; 3]; 3] {
         self.facet.points()
+    }
+
+    #[inline(always)]
+    fn has_area(&self) -> bool {
+        true
     }
 
     #[inline(always)]
@@ -118,14 +123,14 @@ impl<const N: usize> Packet<'_, N> {
     #[inline(always)]
     fn ball<S: Lanes<N>>(&mut self, s: S, ball: &Ball, lanes: u32) {
         let rays = &self.prepared.rays;
-        let (mut enter, mut leave) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let at = |rows: &[Row<N>; 3]| DVec3::new(rows[0][lane].into(), rows[1][lane].into(), rows[2][lane].into());
-            let origin = at(&rays.origin) - DVec3::from_array(ball.center);
-            let [first, second] = line_roots_or_nan(origin, at(&rays.direction), ball.radius);
-            enter[lane] = (if second < first { second } else { first }) as f32;
-            leave[lane] = (if second < first { first } else { second }) as f32;
-        }
+        let radius = ball.sphere.radius();
+        let [enter, leave] = if let Some(by) = ball.sphere.only_moved_by() {
+            places(rays, radius, |origin| origin - by, |direction| direction)
+        } else {
+            let object = ball.sphere.object_from_world();
+            let point = |origin| object.transform_point3(origin);
+            places(rays, radius, point, |direction| object.transform_vector3(direction))
+        };
         let (enter, leave) = (s.load(&enter), s.load(&leave));
         let (tnear, tfar) = (s.load(&rays.tnear), s.load(&rays.tfar));
         let enters = s.and(s.lt(tnear, enter), s.le(enter, tfar));
@@ -144,4 +149,22 @@ impl<const N: usize> Packet<'_, N> {
         };
         self.take_all(s, s.blend(enters, leave, enter), met, &candidate);
     }
+}
+
+/// Where lines enter and leave a sphere of a radius about the origin of the space that `point` and `vector` bring them into; NaN where they miss it.
+#[inline(always)]
+fn places<const N: usize>(
+    rays: &Rays<N>,
+    radius: f64,
+    point: impl Fn(DVec3) -> DVec3,
+    vector: impl Fn(DVec3) -> DVec3,
+) -> [Row<N>; 2] {
+    let mut places = [[0.0; N]; 2];
+    for lane in 0..N {
+        let at = |rows: &[Row<N>; 3]| DVec3::new(rows[0][lane].into(), rows[1][lane].into(), rows[2][lane].into());
+        let [first, second] = line_roots_or_nan(point(at(&rays.origin)), vector(at(&rays.direction)), radius);
+        places[0][lane] = (if second < first { second } else { first }) as f32;
+        places[1][lane] = (if second < first { first } else { second }) as f32;
+    }
+    places
 }

@@ -5,6 +5,7 @@ use crate::accel::bvh::lanes::{BlockPlanes, Lanes};
 use crate::accel::bvh::leaf::{Block, Corners, FixedBlock, LANES as TRIANGLES};
 use crate::accel::bvh::prepare::{Rays, Row};
 use crate::accel::bvh::query::Candidate;
+use crate::accel::bvh::triangle::Plane;
 
 /// Which triangle is tested.
 #[derive(Clone, Copy)]
@@ -20,6 +21,9 @@ pub trait Facet<S: Lanes<N>, const N: usize> {
     fn ids(&self) -> FacetIds;
 
     fn corners(&self) -> [[f32; 3]; 3];
+
+    /// Whether it has area: else no ray meets it, though rounding may seem to say so.
+    fn has_area(&self) -> bool;
 
     /// The offsets of the corners from the origins of the rays, by axis.
     fn offsets(&self, s: S, packet: &Packet<'_, N>) -> [[S::F; 3]; 3];
@@ -55,6 +59,11 @@ impl<S: Lanes<N>, const N: usize> Facet<S, N> for BlockFacet<'_> {
     #[inline(always)]
     fn corners(&self) -> [[f32; 3]; 3] {
         self.block.fixed_corners().lane(self.triangle)
+    }
+
+    #[inline(always)]
+    fn has_area(&self) -> bool {
+        Plane::new(&self.block.fixed_corners().lane(self.triangle)).has_area()
     }
 
     #[inline(always)]
@@ -152,6 +161,7 @@ impl<const N: usize> Packet<'_, N> {
             // Wherever in its box the triangle is met, that counts.
             let inside = s.and(s.and(s.lt(tnear, first), s.le(last, tfar)), s.and(sure, boxed));
             let certain = possible & s.bits(inside);
+            let certain = if certain != 0 && facet.has_area() { certain } else { 0 };
             self.mark(s, certain, &candidate);
             possible &= !certain;
             if possible == 0 {
