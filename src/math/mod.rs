@@ -8,6 +8,7 @@ mod frame;
 mod lanes;
 mod motion;
 mod offset;
+mod packing;
 mod vectorize;
 
 pub use bounds::Bounds3;
@@ -16,4 +17,6 @@ pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat2, Mat3, Mat4, Qu
 pub use lanes::{LANES, Lanes, Vec2Lanes, Vec3Lanes, VectorLanes};
 pub use motion::{AnimatedTransform, Decomposition, transform_point};
 pub use offset::{gamma, offset_ray_origin};
+pub(crate) use packing::columns;
+pub use packing::{Append, Columns, Each, LaneSet, Packing, Shuffle};
 pub use vectorize::{Kernel, Vectorizer};
