@@ -100,16 +100,23 @@ impl<'a> EventLanes<'a> {
     /// Those of one of the paths.
     #[inline]
     pub fn get(&self, lane: usize) -> EventNumbers {
-        let [light, bsdf] = self
-            .all
-            .get_or_init(|| self.streams.draw::<0b1111, 0b1111>(self.vectorizer, self.group));
+        let [light, bsdf] = self.all();
         let of = |numbers: &[Lanes; 4]| numbers.map(|numbers| numbers[lane]);
         EventNumbers::new(of(light), of(bsdf))
     }
 
+    fn all(&self) -> &[[Lanes; 4]; 2] {
+        self.all
+            .get_or_init(|| self.streams.draw::<0b1111, 0b1111>(self.vectorizer, self.group))
+    }
+
     /// Those of Lambertian surfaces, which have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
+    /// `has_others` says whether other surfaces are likely to ask for all of them.
     #[inline(always)]
-    pub fn lambertian(&self, chooses_light: bool, may_end: bool) -> LambertianLanes {
+    pub fn lambertian(&self, chooses_light: bool, may_end: bool, has_others: bool) -> LambertianLanes {
+        if has_others {
+            return LambertianLanes(*self.all());
+        }
         let Self {
             vectorizer,
             streams,

@@ -3,7 +3,7 @@
 //! A packet's columns, of eight numbers of 32 bits each, are permuted alike: chosen lanes come first, in their order, behind what the queue's
 //! last packet holds already; those that do not fit there begin the next one.
 
-use super::{Kernel, LANES, Lanes, Vectorizer};
+use super::{Kernel, LANES, LaneSet, Lanes, Vectorizer};
 
 /// What eight lanes hold, a number of each in every column, to be put into packets `P`.
 pub trait Columns<P = Self> {
@@ -50,7 +50,7 @@ impl<S: Shuffle> Packing<S> {
         let full = (held + added) % (2 * LANES);
         Self {
             shuffle,
-            from: shuffle.widen(ORDERS[usize::from(chosen.0)].rotate_left(8 * held as u32)),
+            from: shuffle.widen(ORDERS[chosen.index()].rotate_left(8 * held as u32)),
             packet: len / LANES,
             held: FIRST_LANES[held],
             full: [FIRST_LANES[full.min(LANES)], FIRST_LANES[full.saturating_sub(LANES)]],
@@ -121,74 +121,6 @@ static FIRST_LANES: [Column; LANES + 1] = {
     }
     masks
 };
-
-/// Some of the lanes of a packet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LaneSet(u8);
-
-impl LaneSet {
-    /// None of them.
-    pub const NONE: Self = Self(0);
-
-    /// How many.
-    #[inline]
-    pub fn len(self) -> u32 {
-        self.0.count_ones()
-    }
-
-    /// Whether a lane is one of them.
-    #[inline(always)]
-    pub fn contains(self, lane: usize) -> bool {
-        self.0 >> lane & 1 == 1
-    }
-
-    /// Those that are in `other` too.
-    #[inline]
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
-    /// Those, and those in `other`.
-    #[inline]
-    #[must_use]
-    pub fn or(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Those that are not in `other`.
-    #[inline]
-    #[must_use]
-    pub fn without(self, other: Self) -> Self {
-        Self(self.0 & !other.0)
-    }
-
-    /// Whether there are none.
-    #[inline]
-    pub fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Which ones.
-    #[inline]
-    pub fn lanes(self) -> impl Iterator<Item = usize> {
-        let mut rest = self.0;
-        std::iter::from_fn(move || {
-            let lane = rest.trailing_zeros() as usize;
-            rest &= rest.wrapping_sub(1);
-            (lane < LANES).then_some(lane)
-        })
-    }
-}
-
-impl From<[bool; LANES]> for LaneSet {
-    #[inline(always)]
-    fn from(chosen: [bool; LANES]) -> Self {
-        // The product brings the lowest bit of each byte to a place of its own in the highest byte.
-        let bytes = u64::from_le_bytes(chosen.map(u8::from));
-        Self((bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8)
-    }
-}
 
 /// For each set the lanes of a packet, a byte for each: first those in the set.
 static ORDERS: [u64; 256] = {

@@ -70,19 +70,7 @@ impl Sampler {
     #[inline]
     pub fn start(&self, x: i32, y: i32, sample_index: u32) -> SampleStream {
         debug_assert!(sample_index < self.samples_per_pixel);
-        let (plan, place, [x, y]) = self.plan(x, y);
-        SampleStream {
-            key: self.key(x, y),
-            reversed_index: sample_index.reverse_bits(),
-            place,
-            plan,
-        }
-    }
-
-    /// How pixel (`x`, `y`) is sampled, and what its key is made of.
-    #[inline(always)]
-    fn plan(&self, x: i32, y: i32) -> (Plan, u16, [i32; 2]) {
-        match self.kind {
+        let (plan, place, [x, y]) = match self.kind {
             SamplerKind::Independent => (Plan::Independent, 0, [x, y]),
             SamplerKind::Stratified(strata) => (Plan::Stratified(strata), 0, [x, y]),
             SamplerKind::Halton => (Plan::Halton(self.samples_per_pixel), 0, [x, y]),
@@ -91,13 +79,14 @@ impl Sampler {
                 let (order, tile) = Order::new(self.samples_per_pixel, x, y);
                 (Plan::ZSobol(order.log2_samples), order.place, tile)
             }
-        }
-    }
-
-    #[inline(always)]
-    fn key(&self, x: i32, y: i32) -> u64 {
+        };
         let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
-        combine(mix64(self.seed ^ GOLDEN), pixel)
+        SampleStream {
+            key: combine(mix64(self.seed ^ GOLDEN), pixel),
+            reversed_index: sample_index.reverse_bits(),
+            place,
+            plan,
+        }
     }
 }
 

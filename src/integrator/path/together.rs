@@ -70,10 +70,11 @@ impl PathIntegrator {
             return LaneSet::NONE;
         }
         let (scene, slots) = (stage.scene, &*stage.slots);
+        let hit = packet.hits.hit_lanes();
         let ended = if scene.has_environment() {
             LaneSet::NONE
         } else {
-            packet.active.without(packet.hits.hit_lanes())
+            packet.active.without(hit)
         };
         let Together {
             vectorizer,
@@ -86,7 +87,8 @@ impl PathIntegrator {
         }
         let (surfaces, only_light) = (packet.surfaces.all(), scene.light_sampler().only());
         let may_end = stage.depth >= FIRST_ROULETTE_DEPTH;
-        let numbers = &packet.numbers.lambertian(only_light.is_none(), may_end);
+        let has_others = !packet.active.and(hit).without(taken).is_empty();
+        let numbers = &packet.numbers.lambertian(only_light.is_none(), may_end, has_others);
         match only_light {
             Some(SampledLight { light, pmf })
                 if lights.sample_one(light, scene.light(light), &surfaces.p, numbers.light()) =>

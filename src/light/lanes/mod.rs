@@ -18,8 +18,8 @@ pub struct LightLanes {
     vectorizer: Vectorizer,
     /// The light that was put into the lane last.
     held: [Option<Held>; LANES],
-    /// A plane that is in all lanes with its radiance, see [`Self::sample_one`].
-    everywhere: Option<LightId>,
+    /// The light that was asked for last in all lanes, and whether it is there, see [`Self::sample_one`].
+    one: Option<(LightId, bool)>,
     plain: PlainLights,
     samples: LightSampleLanes,
 }
@@ -132,7 +132,11 @@ impl LightLanes {
     /// all wavelengths.
     #[inline]
     pub fn sample_one(&mut self, id: LightId, light: &Light, p: &Vec3Lanes, u: [&Lanes; 2]) -> bool {
-        if self.everywhere != Some(id) && self.hold_everywhere(id, light).is_none() {
+        let is_held = match self.one {
+            Some((one, is_held)) if one == id => is_held,
+            _ => self.hold_everywhere(id, light),
+        };
+        if !is_held {
             return false;
         }
         self.vectorizer.run(Compute {
@@ -153,16 +157,15 @@ impl LightLanes {
         &self.samples
     }
 
+    /// Puts a plane whose radiance is known into all lanes; false if it is none.
     #[inline(never)]
-    fn hold_everywhere(&mut self, id: LightId, light: &Light) -> Option<()> {
-        for lane in 0..LANES {
-            let held = self.hold(lane, id, light)?;
-            if held.is_sphere || !held.has_radiance {
-                return None;
-            }
-        }
-        self.everywhere = Some(id);
-        Some(())
+    fn hold_everywhere(&mut self, id: LightId, light: &Light) -> bool {
+        let is_held = (0..LANES).all(|lane| {
+            let held = self.hold(lane, id, light);
+            held.is_some_and(|held| !held.is_sphere && held.has_radiance)
+        });
+        self.one = Some((id, is_held));
+        is_held
     }
 
     /// Puts a light into a lane, unless it is there; `None` if it is not plain.
@@ -180,7 +183,8 @@ impl LightLanes {
             PlainShape::Sphere(sphere) => self.plain.spheres.set(lane, sphere),
         }
         self.plain.two_sided[lane] = light.two_sided;
-        self.everywhere = None;
+        // What was everywhere is so no more.
+        self.one = self.one.filter(|(_, is_held)| !is_held);
         if let Some(radiance) = radiance {
             self.plain.radiance.set(lane, radiance);
         }
