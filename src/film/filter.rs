@@ -1,7 +1,7 @@
 //! Pixel filters, sampled in proportion to their value, so that a camera sample belongs to one pixel.
 
 use crate::desc::FilterKind;
-use crate::math::Vec2;
+use crate::math::{Kernel, LANES, Lanes, Vec2, Vec2Lanes, VectorLanes, Vectorizer};
 use crate::sampling::{PiecewiseConstant1D, warp};
 
 impl FilterKind {
@@ -52,6 +52,15 @@ pub struct FilterSample {
     pub offset: Vec2,
     /// The filter's value over the density of the sample and the filter's integral: its mean is 1; negative in negative lobes.
     pub weight: f32,
+}
+
+/// [`FilterSample`]s of eight pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FilterLanes {
+    /// See [`FilterSample::offset`].
+    pub offset: Vec2Lanes,
+    /// See [`FilterSample::weight`].
+    pub weight: Lanes,
 }
 
 /// A separable pixel filter.
@@ -126,6 +135,48 @@ impl PixelFilter {
             weight: wx * wy,
         }
     }
+
+    /// [`Self::sample`] of eight pixels: the same bits, several times faster for a box and a triangle.
+    #[inline]
+    pub fn sample_lanes(&self, vectorizer: Vectorizer, u: [&Lanes; 2]) -> FilterLanes {
+        match self.kind {
+            FilterKind::Box => return vectorizer.run(SamplePlain::<false> { filter: self, u }),
+            FilterKind::Triangle => return vectorizer.run(SamplePlain::<true> { filter: self, u }),
+            _ => {}
+        }
+        let mut lanes = FilterLanes::default();
+        let [u_x, u_y] = u;
+        for (i, (&x, &y)) in u_x.iter().zip(u_y).enumerate() {
+            let FilterSample { offset, weight } = self.sample(Vec2::new(x, y));
+            lanes.offset.set(i, offset);
+            lanes.weight[i] = weight;
+        }
+        lanes
+    }
+}
+
+/// [`PixelFilter::sample_lanes`] of a box or a triangle, whose weights are 1.
+struct SamplePlain<'a, const IS_TRIANGLE: bool> {
+    filter: &'a PixelFilter,
+    u: [&'a Lanes; 2],
+}
+
+impl<const IS_TRIANGLE: bool> Kernel for SamplePlain<'_, IS_TRIANGLE> {
+    type Output = FilterLanes;
+
+    #[inline(always)]
+    fn call(self) -> FilterLanes {
+        let [x, y] = &self.filter.axes;
+        let (radius_x, radius_y) = (x.radius as f32, y.radius as f32);
+        let mut lanes = FilterLanes::default();
+        for i in 0..LANES {
+            let x = plain_offset(IS_TRIANGLE, radius_x, self.u[0][i]);
+            let y = plain_offset(IS_TRIANGLE, radius_y, self.u[1][i]);
+            lanes.offset.set(i, Vec2::new(x, y));
+            lanes.weight[i] = 1.0;
+        }
+        lanes
+    }
 }
 
 impl FilterAxis {
@@ -185,9 +236,18 @@ impl FilterAxis {
                 let value = self.evaluate(kind, f64::from(x));
                 (x, (value / f64::from(pdf)) as f32)
             }
-            (None, FilterKind::Triangle) => (warp::sample_tent(u, self.radius as f32), 1.0),
-            (None, _) => ((2.0 * u - 1.0) * self.radius as f32, 1.0),
+            (None, _) => (plain_offset(kind == FilterKind::Triangle, self.radius as f32, u), 1.0),
         }
+    }
+}
+
+/// An offset of a triangle, or else of a box.
+#[inline(always)]
+fn plain_offset(is_triangle: bool, radius: f32, u: f32) -> f32 {
+    if is_triangle {
+        warp::sample_tent(u, radius)
+    } else {
+        (2.0 * u - 1.0) * radius
     }
 }
 

@@ -9,7 +9,7 @@ mod splats;
 mod sums;
 
 pub use crate::desc::{FilterKind, PixelRect};
-pub use filter::{FilterSample, PixelFilter};
+pub use filter::{FilterLanes, FilterSample, PixelFilter};
 pub use gbuffer::{GBUFFER_CHANNELS, SurfaceSample};
 pub use layers::LayerSample;
 pub use sensor::{Sensor, SensorSpec};

@@ -21,7 +21,7 @@ pub use crate::math::LANES;
 pub use cone::RayCone;
 pub use curve::{CurveKind, CurveSegment, CurveSet, FacingCurves};
 pub use mesh::TriangleMesh;
-pub use packet::{HitPacket, Ray, RayPacket, RayQueue};
+pub use packet::{HitPacket, Ray, RayLanes, RayPacket, RayQueue};
 pub use patch::{Patch, PatchHit};
 pub use patch_mesh::{PatchMesh, PatchSurface};
 pub use quadric::{Quadric, QuadricKind, QuadricPoint};

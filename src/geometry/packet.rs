@@ -1,6 +1,6 @@
 //! Rays and hits in struct-of-arrays packets.
 
-use crate::math::{LANES, Vec3};
+use crate::math::{Columns, LANES, LaneSet, Lanes, Packing, Shuffle, Vec3, Vec3Lanes, VectorLanes};
 
 /// One ray, as it is put into a packet.
 #[derive(Clone, Copy, Debug)]
@@ -167,6 +167,48 @@ impl RayPacket {
     }
 }
 
+/// Rays of eight lanes that see everything, from 0 on: [`Ray::new`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RayLanes {
+    /// See [`Ray::origin`].
+    pub origin: Vec3Lanes,
+    /// See [`Ray::direction`].
+    pub direction: Vec3Lanes,
+    /// See [`Ray::tfar`].
+    pub tfar: Lanes,
+    /// See [`Ray::time`].
+    pub time: Lanes,
+}
+
+impl RayLanes {
+    /// Puts a ray into `lane`.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, origin: Vec3, direction: Vec3, tfar: f32, time: f32) {
+        self.origin.set(lane, origin);
+        self.direction.set(lane, direction);
+        (self.tfar[lane], self.time[lane]) = (tfar, time);
+    }
+}
+
+impl Columns<RayPacket> for RayLanes {
+    #[inline(always)]
+    fn pack<S: Shuffle>(&self, packing: &Packing<S>, last: &mut RayPacket, next: &mut RayPacket) {
+        let [x, y, z] = self.origin.columns();
+        x.pack(packing, &mut last.org_x, &mut next.org_x);
+        y.pack(packing, &mut last.org_y, &mut next.org_y);
+        z.pack(packing, &mut last.org_z, &mut next.org_z);
+        let [x, y, z] = self.direction.columns();
+        x.pack(packing, &mut last.dir_x, &mut next.dir_x);
+        y.pack(packing, &mut last.dir_y, &mut next.dir_y);
+        z.pack(packing, &mut last.dir_z, &mut next.dir_z);
+        self.tfar.pack(packing, &mut last.tfar, &mut next.tfar);
+        self.time.pack(packing, &mut last.time, &mut next.time);
+        [0.0; LANES].pack(packing, &mut last.tnear, &mut next.tnear);
+        packing.fill(u32::MAX, &mut last.mask, &mut next.mask);
+        packing.fill(0, &mut last.id, &mut next.id);
+    }
+}
+
 /// Rays, packed as they come: ray i is lane i % 8 of packet i / 8. Lanes of the last packet that hold no ray take no part.
 #[derive(Clone, Debug, Default)]
 pub struct RayQueue {
@@ -188,6 +230,28 @@ impl RayQueue {
         }
         self.packets[packet].set(lane, ray);
         self.len += 1;
+    }
+
+    /// Adds eight rays, of which some may take no part, to others that are whole packets.
+    pub fn push_packet(&mut self, rays: &RayPacket) {
+        debug_assert!(self.len.is_multiple_of(LANES));
+        let packet = self.len / LANES;
+        if packet == self.packets.len() {
+            self.packets.push(*rays);
+        } else {
+            self.packets[packet] = *rays;
+        }
+        self.len += LANES;
+    }
+
+    /// Adds the chosen lanes of `rays`, `packing` being for as many as there are.
+    #[inline(always)]
+    pub fn append<S: Shuffle>(&mut self, packing: &Packing<S>, rays: &impl Columns<RayPacket>) {
+        packing.append(&mut self.packets, rays, &RayPacket::EMPTY);
+        if let Some([last, next]) = self.packets[self.len / LANES..].first_chunk_mut() {
+            packing.end_with(f32::NEG_INFINITY, &mut last.tfar, &mut next.tfar);
+        }
+        self.len += packing.added();
     }
 
     /// Number of rays.
@@ -253,6 +317,12 @@ impl HitPacket {
         instance: [Self::NONE; LANES],
         t: [f32::INFINITY; LANES],
     };
+
+    /// The lanes that hit something.
+    #[inline]
+    pub fn hit_lanes(&self) -> LaneSet {
+        self.geometry.map(|geometry| geometry != Self::NONE).into()
+    }
 
     /// Whether `lane` hit something.
     #[inline]

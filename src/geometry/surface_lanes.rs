@@ -3,7 +3,7 @@
 use super::mesh::{NO_NORMALS, PLAIN_UVS};
 use super::triangle::{self, Corners, rounding_error};
 use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
-use crate::math::{Kernel, LANES, Lanes, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
+use crate::math::{Kernel, LANES, Lanes, Vec2, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 
 /// The surfaces that the lanes of a packet hit: the bits of [`World::interaction`], several times faster where they hit triangles in
 /// world space. Made once and filled again and again.
@@ -21,9 +21,10 @@ pub struct SurfaceLanes {
 /// What [`triangle::point`] and [`Corners::at`] are given.
 #[derive(Clone, Copy, Debug, Default)]
 struct Triangles {
-    vertices: [Vec3Lanes; 3],
-    normals: [Vec3Lanes; 3],
-    uvs: [Vec2Lanes; 3],
+    /// Of each corner what the lanes have, one after the other: as meshes have it, in two copies and not in three.
+    vertices: [[Vec3; LANES]; 3],
+    normals: [[Vec3; LANES]; 3],
+    uvs: [[Vec2; LANES]; 3],
     side: Lanes,
     /// Whether the lane's normals are those of a mesh without any, and so its texture coordinates.
     has_no_normals: [bool; LANES],
@@ -72,7 +73,12 @@ impl SurfaceLanes {
         }
         if self.is_triangle != [false; LANES] {
             let triangles = &self.triangles;
-            self.surfaces = self.vectorizer.run(Compute { rays, triangles });
+            let surfaces = &mut self.surfaces;
+            self.vectorizer.run(Compute {
+                rays,
+                triangles,
+                surfaces,
+            });
         }
         if has_others {
             self.fill_others(rays, hits, other);
@@ -151,7 +157,7 @@ impl Triangles {
         if mesh.is_moving() {
             set_all(&mut self.vertices, lane, [0, 1, 2], &mesh.triangle(triangle, time));
         } else {
-            set_all(&mut self.vertices, lane, corners, mesh.positions(0));
+            set_all(&mut self.vertices, lane, corners, mesh.padded_positions(0));
         }
         // What a mesh does not have is mostly in its lane already.
         match mesh.normals() {
@@ -172,9 +178,9 @@ impl Triangles {
 
 /// Puts what three corners have of `values` into a lane. One by one: an array of them would go by way of memory.
 #[inline(always)]
-fn set_all<L: VectorLanes>(lanes: &mut [L; 3], lane: usize, corners: [u32; 3], values: &[L::Vector]) {
+fn set_all<T: Copy>(lanes: &mut [[T; LANES]; 3], lane: usize, corners: [u32; 3], values: &[T]) {
     for i in 0..3 {
-        lanes[i].set(lane, values[corners[i] as usize]);
+        lanes[i][lane] = values[corners[i] as usize];
     }
 }
 
@@ -182,23 +188,25 @@ fn set_all<L: VectorLanes>(lanes: &mut [L; 3], lane: usize, corners: [u32; 3], v
 struct Compute<'a> {
     rays: &'a RayPacket,
     triangles: &'a Triangles,
+    /// Written at the end, all at once: the compiler cannot know that it is apart from the others.
+    surfaces: &'a mut Surfaces,
 }
 
 impl Kernel for Compute<'_> {
-    type Output = Surfaces;
+    type Output = ();
 
     #[inline(always)]
-    fn call(self) -> Surfaces {
-        let Self { rays, triangles } = self;
+    fn call(self) {
+        let Self { rays, triangles, .. } = self;
         let Triangles {
             vertices, normals, uvs, ..
         } = triangles;
         let mut surfaces = Surfaces::default();
         for i in 0..LANES {
-            let vertices = [vertices[0].get(i), vertices[1].get(i), vertices[2].get(i)];
+            let vertices = [vertices[0][i], vertices[1][i], vertices[2][i]];
             let corners = Corners {
-                normals: [normals[0].get(i), normals[1].get(i), normals[2].get(i)],
-                uvs: [uvs[0].get(i), uvs[1].get(i), uvs[2].get(i)],
+                normals: [normals[0][i], normals[1][i], normals[2][i]],
+                uvs: [uvs[0][i], uvs[1][i], uvs[2][i]],
                 side: triangles.side[i],
             };
             let point = triangle::point(&vertices, rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
@@ -221,7 +229,7 @@ impl Kernel for Compute<'_> {
             surfaces.uv.set(i, attributes.uv);
             surfaces.barycentrics.set(i, barycentrics.into());
         }
-        surfaces
+        *self.surfaces = surfaces;
     }
 }
 
@@ -229,7 +237,7 @@ impl Kernel for Compute<'_> {
 mod tests {
     use super::*;
     use crate::geometry::{Geometry, GeometryId, Group, Instance, PrimitiveId, Sphere, WorldBuilder};
-    use crate::math::{AnimatedTransform, DAffine3, DVec3, Vec2};
+    use crate::math::{AnimatedTransform, DAffine3, DVec3};
 
     /// Meshes bare, with normals (one of which faces away), with texture coordinates, moving; a sphere; an instance.
     fn world() -> World {

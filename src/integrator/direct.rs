@@ -2,12 +2,14 @@
 //! points of lights, and by directions drawn from BSDFs that meet a light.
 
 use super::fault::Fault;
+use super::lane::LaneState;
 use super::numbers::EventNumbers;
+use super::queue::Packet;
 use crate::desc::{Heuristic, Strategy};
 use crate::geometry::{Ray, SurfaceInteraction};
 use crate::light::{LightDensity, LightEnd, LightSample, SampledLight};
 use crate::material::{Bsdf, TransportMode};
-use crate::math::Vec3;
+use crate::math::{LANES, Lanes, Vec3, Vec3Lanes, VectorLanes, columns};
 use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
 use crate::scene::Scene;
 use crate::spectrum::{SampledSpectrum, Wavelengths};
@@ -32,6 +34,60 @@ impl Origin {
                 n,
                 pdf: SolidAnglePdf(pdf.0 * passed),
             },
+        }
+    }
+}
+
+impl LaneState for Origin {
+    type Lanes = OriginLanes;
+}
+
+/// Eight of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OriginLanes {
+    pub p: Vec3Lanes,
+    pub n: Vec3Lanes,
+    /// Negative for [`Origin::Delta`].
+    pub pdf: Lanes,
+}
+
+columns!(OriginLanes { p, n, pdf });
+
+impl Packet for OriginLanes {
+    type Lane = Origin;
+
+    #[inline(always)]
+    fn all(origin: Origin) -> Self {
+        let mut lanes = Self {
+            p: Vec3Lanes::default(),
+            n: Vec3Lanes::default(),
+            pdf: [-1.0; LANES],
+        };
+        if let Origin::Sampled { .. } = origin {
+            (0..LANES).for_each(|lane| lanes.set(lane, origin));
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> Origin {
+        if self.pdf[lane] < 0.0 {
+            return Origin::Delta;
+        }
+        Origin::Sampled {
+            p: self.p.get(lane),
+            n: self.n.get(lane),
+            pdf: SolidAnglePdf(self.pdf[lane]),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, origin: Origin) {
+        self.pdf[lane] = -1.0;
+        if let Origin::Sampled { p, n, pdf } = origin {
+            self.p.set(lane, p);
+            self.n.set(lane, n);
+            self.pdf[lane] = pdf.0;
         }
     }
 }

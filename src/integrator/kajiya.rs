@@ -70,7 +70,8 @@ impl Estimator for KajiyaIntegrator {
             Termination::Constant(alpha) => alpha,
             Termination::Albedo => (1.0 - albedo(&bsdf, si.wo)).clamp(*ALPHA.start(), *ALPHA.end()),
         };
-        if vertex.numbers.roulette < alpha {
+        let numbers = vertex.numbers();
+        if numbers.roulette < alpha {
             return;
         }
         let whole = Lane {
@@ -79,11 +80,11 @@ impl Estimator for KajiyaIntegrator {
             ..*lane
         };
         if !bsdf.is_delta() {
-            add_delta_lights(stage, &whole, si, &bsdf, vertex.numbers.light);
+            add_delta_lights(stage, &whole, si, &bsdf, numbers.light);
         }
         for branch in 0..self.branching {
             let mut next = whole;
-            let mut numbers = *vertex.numbers;
+            let mut numbers = numbers;
             if self.branching > 1 {
                 next.stream = lane.stream.branch(branch);
                 numbers = EventNumbers::draw(&next.stream, stage.depth);

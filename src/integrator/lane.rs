@@ -1,10 +1,15 @@
 //! Slots and lanes: the state of a wave.
+//!
+//! Lanes lie side by side in packets of eight, column by column: what takes them together reads and writes columns, what takes them one by one
+//! asks a packet for a [`Lane`].
 
+use super::queue::{Packet, Queue};
 use crate::accel::RayKind;
-use crate::geometry::{Ray, RayCone, RayQueue};
+use crate::geometry::RayCone;
 use crate::material::TransportMode;
-use crate::sampling::SampleStream;
-use crate::spectrum::{SampledSpectrum, Wavelengths};
+use crate::math::{Each, LANES, Lanes, columns};
+use crate::sampling::{SampleStream, StreamLanes};
+use crate::spectrum::{SampledSpectrum, SpectrumLanes, Wavelengths};
 
 /// A pixel sample.
 #[derive(Clone, Copy, Debug)]
@@ -58,45 +63,120 @@ pub(super) struct Lane<S> {
 /// The slot of a camera ray that is traced for the sake of its packet only: nothing is wanted of it.
 pub(super) const NO_SLOT: u32 = u32::MAX;
 
+/// What an estimator has to know of the way that a path came.
+pub(super) trait LaneState: Copy {
+    /// Eight of them.
+    type Lanes: Packet<Lane = Self>;
+}
+
+impl LaneState for () {
+    type Lanes = Each<()>;
+}
+
+/// Eight lanes side by side.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(super) struct LanePacket<S: LaneState> {
+    /// See [`Lane::slot`].
+    pub slot: [u32; LANES],
+    /// See [`Lane::split`]: 0 or 1.
+    pub split: [u32; LANES],
+    /// See [`Lane::stream`].
+    pub streams: StreamLanes,
+    /// See [`Lane::beta`].
+    pub beta: SpectrumLanes,
+    /// See [`Lane::eta_scale`].
+    pub eta_scale: Lanes,
+    /// See [`RayCone::width`].
+    pub cone_width: Lanes,
+    /// See [`RayCone::spread`].
+    pub cone_spread: Lanes,
+    /// See [`Lane::state`].
+    pub states: S::Lanes,
+}
+
+columns!(LanePacket<S: LaneState> { slot, split, streams, beta, eta_scale, cone_width, cone_spread, states });
+
+impl<S: LaneState> LanePacket<S> {
+    /// How wide the ray of a lane is.
+    #[inline(always)]
+    pub fn cone(&self, lane: usize) -> RayCone {
+        RayCone {
+            width: self.cone_width[lane],
+            spread: self.cone_spread[lane],
+        }
+    }
+}
+
+impl<S: LaneState> Packet for LanePacket<S> {
+    type Lane = Lane<S>;
+
+    #[inline(always)]
+    fn all(lane: Lane<S>) -> Self {
+        Self {
+            slot: [lane.slot; LANES],
+            split: [lane.split.into(); LANES],
+            streams: StreamLanes::all(lane.stream),
+            beta: SpectrumLanes::all(lane.beta),
+            eta_scale: [lane.eta_scale; LANES],
+            cone_width: [lane.cone.width; LANES],
+            cone_spread: [lane.cone.spread; LANES],
+            states: S::Lanes::all(lane.state),
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> Lane<S> {
+        Lane {
+            slot: self.slot[lane],
+            split: self.split[lane] != 0,
+            stream: self.streams.get(lane),
+            beta: self.beta.get(lane),
+            eta_scale: self.eta_scale[lane],
+            cone: self.cone(lane),
+            state: self.states.get(lane),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, lane: Lane<S>) {
+        self.slot[i] = lane.slot;
+        self.split[i] = lane.split.into();
+        self.streams.set(i, lane.stream);
+        self.beta.set(i, lane.beta);
+        self.eta_scale[i] = lane.eta_scale;
+        (self.cone_width[i], self.cone_spread[i]) = (lane.cone.width, lane.cone.spread);
+        self.states.set(i, lane.state);
+    }
+}
+
 /// Paths of the same number of scattering events, and the rays that they go on by.
-#[derive(Debug)]
-pub(super) struct Batch<S> {
+pub(super) struct Batch<S: LaneState> {
     /// Which end the paths started from: what they carry.
     pub mode: TransportMode,
     /// Whose rays they are.
     pub kind: RayKind,
     /// Scattering events before the rays.
     pub depth: u32,
-    /// The paths.
-    pub lanes: Vec<Lane<S>>,
-    /// Their rays.
-    pub rays: RayQueue,
+    /// The rays, and the paths that they belong to.
+    pub paths: Queue<LanePacket<S>>,
 }
 
-impl<S> Default for Batch<S> {
+impl<S: LaneState> Default for Batch<S> {
     fn default() -> Self {
         Self {
             mode: TransportMode::Radiance,
             kind: RayKind::Bounce,
             depth: 0,
-            lanes: Vec::new(),
-            rays: RayQueue::default(),
+            paths: Queue::default(),
         }
     }
 }
 
-impl<S: Copy> Batch<S> {
+impl<S: LaneState> Batch<S> {
     /// Forgets all paths; others of `depth` will follow, scattered ones unless [`Self::kind`] is set.
     pub fn restart(&mut self, mode: TransportMode, depth: u32) {
         (self.mode, self.kind, self.depth) = (mode, RayKind::Bounce, depth);
-        self.lanes.clear();
-        self.rays.clear();
-    }
-
-    /// Adds a path with a ray that is valid.
-    #[inline(always)]
-    pub fn push(&mut self, lane: &Lane<S>, ray: &Ray) {
-        self.rays.push(ray);
-        self.lanes.push(*lane);
+        self.paths.clear();
     }
 }

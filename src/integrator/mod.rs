@@ -30,6 +30,7 @@ mod numbers;
 mod occlusion;
 mod path;
 mod photon;
+mod queue;
 mod schedule;
 mod shadow;
 mod stage;

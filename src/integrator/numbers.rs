@@ -1,7 +1,9 @@
 //! The random numbers of paths, by what they decide: see the table in [`integrator`](super).
 
-use crate::math::{LANES, Lanes, Vec2, Vectorizer};
-use crate::sampling::SampleStream;
+use std::cell::OnceCell;
+
+use crate::math::{Lanes, Vec2, Vectorizer};
+use crate::sampling::{SampleStream, StreamLanes};
 
 /// Groups of random numbers that the camera sample uses; of a light path's branch, those of its start.
 pub(super) const FILM_GROUP: u32 = 0;
@@ -75,52 +77,87 @@ fn event_group(depth: u32) -> u32 {
     FIRST_EVENT_GROUP + 2 * depth
 }
 
-/// [`EventNumbers`] of eight paths.
-pub(super) struct EventLanes {
-    light: [Lanes; 4],
-    bsdf: [Lanes; 4],
+/// [`EventNumbers`] of eight paths, drawn when they are asked for.
+pub(super) struct EventLanes<'a> {
+    vectorizer: Vectorizer,
+    streams: &'a StreamLanes,
+    group: u32,
+    all: OnceCell<[[Lanes; 4]; 2]>,
 }
 
-impl EventLanes {
+impl<'a> EventLanes<'a> {
     /// Those of the scattering event `depth` of each path.
-    pub fn draw(vectorizer: Vectorizer, streams: &[SampleStream; LANES], depth: u32) -> Self {
-        let group = event_group(depth);
+    #[inline]
+    pub fn new(vectorizer: Vectorizer, streams: &'a StreamLanes, depth: u32) -> Self {
         Self {
-            light: SampleStream::draw4_lanes(vectorizer, streams, group),
-            bsdf: SampleStream::draw4_lanes(vectorizer, streams, group + 1),
+            vectorizer,
+            streams,
+            group: event_group(depth),
+            all: OnceCell::new(),
         }
-    }
-
-    /// The two for points of lights.
-    #[inline]
-    pub fn light(&self) -> [&Lanes; 2] {
-        let [x, y, ..] = &self.light;
-        [x, y]
-    }
-
-    /// See [`EventNumbers::which_light`].
-    #[inline]
-    pub fn which_light(&self) -> &Lanes {
-        &self.light[2]
-    }
-
-    /// See [`EventNumbers::roulette`].
-    #[inline]
-    pub fn roulette(&self) -> &Lanes {
-        &self.light[3]
-    }
-
-    /// The two for directions within lobes.
-    #[inline]
-    pub fn bsdf(&self) -> [&Lanes; 2] {
-        let [x, y, ..] = &self.bsdf;
-        [x, y]
     }
 
     /// Those of one of the paths.
     #[inline]
     pub fn get(&self, lane: usize) -> EventNumbers {
+        let [light, bsdf] = self.all();
         let of = |numbers: &[Lanes; 4]| numbers.map(|numbers| numbers[lane]);
-        EventNumbers::new(of(&self.light), of(&self.bsdf))
+        EventNumbers::new(of(light), of(bsdf))
+    }
+
+    fn all(&self) -> &[[Lanes; 4]; 2] {
+        self.all
+            .get_or_init(|| self.streams.draw::<0b1111, 0b1111>(self.vectorizer, self.group))
+    }
+
+    /// Those of Lambertian surfaces, which have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
+    /// `has_others` says whether other surfaces are likely to ask for all of them.
+    #[inline(always)]
+    pub fn lambertian(&self, chooses_light: bool, may_end: bool, has_others: bool) -> LambertianLanes {
+        if has_others {
+            return LambertianLanes(*self.all());
+        }
+        let Self {
+            vectorizer,
+            streams,
+            group,
+            ..
+        } = *self;
+        LambertianLanes(match (chooses_light, may_end) {
+            (false, false) => streams.draw::<0b0011, 0b0011>(vectorizer, group),
+            (false, true) => streams.draw::<0b1011, 0b0011>(vectorizer, group),
+            (true, _) => streams.draw::<0b1111, 0b0011>(vectorizer, group),
+        })
+    }
+}
+
+/// What Lambertian surfaces need of [`EventNumbers`], of eight paths.
+pub(super) struct LambertianLanes([[Lanes; 4]; 2]);
+
+impl LambertianLanes {
+    /// The two for points of lights.
+    #[inline(always)]
+    pub fn light(&self) -> [&Lanes; 2] {
+        let [[x, y, ..], _] = &self.0;
+        [x, y]
+    }
+
+    /// See [`EventNumbers::which_light`].
+    #[inline(always)]
+    pub fn which_light(&self) -> &Lanes {
+        &self.0[0][2]
+    }
+
+    /// See [`EventNumbers::roulette`].
+    #[inline(always)]
+    pub fn roulette(&self) -> &Lanes {
+        &self.0[0][3]
+    }
+
+    /// The two for directions.
+    #[inline(always)]
+    pub fn bsdf(&self) -> [&Lanes; 2] {
+        let [_, [x, y, ..]] = &self.0;
+        [x, y]
     }
 }

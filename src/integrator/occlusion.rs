@@ -33,9 +33,9 @@ impl Estimator for OcclusionIntegrator {
         let n = if si.ng.dot(si.wo) < 0.0 { -si.ng } else { si.ng };
         // The share is the mean of cos / (pi p).
         let (local, share) = if self.cosine {
-            (warp::sample_cosine_hemisphere(vertex.numbers.bsdf), 1.0)
+            (warp::sample_cosine_hemisphere(vertex.numbers().bsdf), 1.0)
         } else {
-            let local = warp::sample_uniform_hemisphere(vertex.numbers.bsdf);
+            let local = warp::sample_uniform_hemisphere(vertex.numbers().bsdf);
             (local, local.z / (PI * warp::uniform_hemisphere_pdf().0))
         };
         let wi: Vec3 = Frame::from_normal(n).to_world(local).normalize();

@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use super::queue::{Packet, Queue};
 use crate::accel::RayKind;
-use crate::geometry::{LANES, Ray, RayQueue, SurfaceInteraction};
+use crate::geometry::{LANES, Ray, SurfaceInteraction};
 use crate::light::LightEnd;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Each, Vec2, Vec3, columns};
 use crate::scene::Scene;
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{SampledSpectrum, SpectrumLanes};
 
 /// The ray from `si` in direction `wi` to where a light was sampled. It ends just before the light's own surface.
 #[inline]
@@ -27,6 +28,45 @@ pub(super) struct Contribution {
     pub value: SampledSpectrum,
 }
 
+/// Eight of them.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+pub(super) struct ContributionLanes {
+    pub slot: [u32; LANES],
+    pub note: [u32; LANES],
+    pub value: SpectrumLanes,
+}
+
+columns!(ContributionLanes { slot, note, value });
+
+impl Packet for ContributionLanes {
+    type Lane = Contribution;
+
+    #[inline(always)]
+    fn all(Contribution { slot, note, value }: Contribution) -> Self {
+        Self {
+            slot: [slot; LANES],
+            note: [note; LANES],
+            value: SpectrumLanes::all(value),
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> Contribution {
+        Contribution {
+            slot: self.slot[lane],
+            note: self.note[lane],
+            value: self.value.get(lane),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, Contribution { slot, note, value }: Contribution) {
+        (self.slot[lane], self.note[lane]) = (slot, note);
+        self.value.set(lane, value);
+    }
+}
+
 /// Of a contribution that its estimator has not noted.
 pub(super) const NO_NOTE: u32 = u32::MAX;
 
@@ -43,53 +83,29 @@ pub(super) struct SplatContribution {
     pub value: SampledSpectrum,
 }
 
+/// Eight of them.
+pub(super) type SplatLanes = Each<SplatContribution>;
+
 /// Shadow rays and their contributions, in the order in which they were found.
-#[derive(Debug)]
-pub(super) struct ShadowQueue<T> {
-    rays: RayQueue,
-    contributions: Vec<T>,
-}
+pub(super) type ShadowQueue<P> = Queue<P>;
 
-impl<T> Default for ShadowQueue<T> {
-    fn default() -> Self {
-        Self {
-            rays: RayQueue::default(),
-            contributions: Vec::new(),
-        }
-    }
-}
-
-impl<T: Copy> ShadowQueue<T> {
-    /// Adds a ray, which must be valid, and what it brings.
-    #[inline(always)]
-    pub fn push(&mut self, ray: &Ray, contribution: T) {
-        self.rays.push(ray);
-        self.contributions.push(contribution);
-    }
-
-    /// Number of rays.
-    pub fn len(&self) -> usize {
-        self.contributions.len()
-    }
-
+impl<P: Packet> ShadowQueue<P> {
     /// Traces all rays, hands the contributions of those that are not blocked to `add` in order, and empties the queue. Returns
     /// the time inside the backend.
-    pub fn flush(&mut self, scene: &Scene, mut add: impl FnMut(T)) -> Duration {
-        if self.contributions.is_empty() {
+    pub fn flush(&mut self, scene: &Scene, mut add: impl FnMut(P::Lane)) -> Duration {
+        if self.is_empty() {
             return Duration::ZERO;
         }
         let start = Instant::now();
-        scene.occluded(RayKind::Shadow, self.rays.packets_mut());
+        scene.occluded(RayKind::Shadow, self.rays_mut());
         let elapsed = start.elapsed();
-        for (rays, contributions) in self.rays.packets().iter().zip(self.contributions.chunks(LANES)) {
-            for (lane, contribution) in contributions.iter().enumerate() {
-                if !rays.is_occluded(lane) {
-                    add(*contribution);
-                }
+        for (rays, contributions) in self.packets() {
+            // Lanes without a ray look as if something were in the way.
+            for lane in (0..LANES).filter(|&lane| !rays.is_occluded(lane)) {
+                add(contributions.get(lane));
             }
         }
-        self.rays.clear();
-        self.contributions.clear();
+        self.clear();
         elapsed
     }
 }

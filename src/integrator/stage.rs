@@ -4,14 +4,15 @@
 use std::sync::Mutex;
 
 use super::RenderStats;
-use super::lane::{Batch, Lane, Slot};
+use super::lane::{Batch, Lane, LanePacket, LaneState, Slot};
 use super::numbers::{EventLanes, EventNumbers};
-use super::shadow::{Contribution, NO_NOTE, ShadowQueue, SplatContribution, shadow_ray};
+use super::shadow::{Contribution, ContributionLanes, NO_NOTE, ShadowQueue, SplatContribution, SplatLanes, shadow_ray};
 use super::wave::WAVE_LANES;
 use crate::film::{Film, TileSums};
-use crate::geometry::{Hit, HitPacket, LANES, Ray, RayCone, RayPacket, SurfaceInteraction, SurfaceLanes};
+use crate::geometry::{Hit, HitPacket, LANES, Ray, RayCone, RayLanes, RayPacket, SurfaceInteraction, SurfaceLanes};
 use crate::light::LightSample;
 use crate::material::TransportMode;
+use crate::math::{Columns, LaneSet, Vectorizer};
 use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
 use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths};
@@ -20,7 +21,7 @@ use crate::spectrum::{ColorMode, SampledSpectrum, Wavelengths};
 /// camera.
 pub(super) trait Estimator: Sync + Sized {
     /// What a path carries from event to event, beside what [`Lane`] has.
-    type State: Copy;
+    type State: LaneState;
     /// What a wave keeps of its light paths, to connect its camera paths to.
     type Memory<'s>: Default;
     /// Whether each pixel sample has a light path, which goes before its camera path.
@@ -72,16 +73,12 @@ pub(super) trait Estimator: Sync + Sized {
         let _ = (stage, slot, stream);
     }
 
-    /// Takes paths to their next scattering events that can be taken there together, and says which of `packet` those are: the others, and
-    /// all where nothing is gained, are [shaded](Self::shade) one by one. What a path brings and where it goes must not depend on the
+    /// Takes paths to their next scattering events, or ends, that can be taken there together, and says which of `packet` those are: the others,
+    /// and all where nothing is gained, are [shaded](Self::shade) one by one. What a path brings and where it goes must not depend on the
     /// paths beside it.
-    fn shade_together<'s>(
-        &self,
-        stage: &mut Stage<'_, 's, Self>,
-        packet: &PacketVertices<'_, Self::State>,
-    ) -> [bool; LANES] {
+    fn shade_together<'s>(&self, stage: &mut Stage<'_, 's, Self>, packet: &PacketVertices<'_, Self::State>) -> LaneSet {
         let _ = (stage, packet);
-        [false; LANES]
+        LaneSet::NONE
     }
 
     /// Takes a path to its next scattering event.
@@ -127,14 +124,25 @@ pub(super) struct Vertex<'a, S> {
     pub surface: Option<&'a SurfaceInteraction>,
     /// The cone of the ray from there on.
     pub cone: RayCone,
+    /// Which lane of its packet it is, and the packet's random numbers: see [`Vertex::numbers`].
+    pub index: usize,
+    pub events: &'a EventLanes<'a>,
+}
+
+impl<S> Vertex<'_, S> {
     /// Random numbers for the scattering event there.
-    pub numbers: &'a EventNumbers,
+    #[inline]
+    pub fn numbers(&self) -> EventNumbers {
+        self.events.get(self.index)
+    }
 }
 
 /// Where the rays of a packet ended.
-pub(super) struct PacketVertices<'a, S> {
+pub(super) struct PacketVertices<'a, S: LaneState> {
+    /// Those that are paths, and whose rays were traced.
+    pub active: LaneSet,
     /// The paths.
-    pub lanes: &'a [Lane<S>],
+    pub lanes: &'a LanePacket<S>,
     /// Their rays.
     pub rays: &'a RayPacket,
     /// What they hit.
@@ -142,10 +150,10 @@ pub(super) struct PacketVertices<'a, S> {
     /// The surfaces there.
     pub surfaces: &'a SurfaceLanes,
     /// Random numbers for the scattering events there.
-    pub numbers: &'a EventLanes,
+    pub numbers: &'a EventLanes<'a>,
 }
 
-impl<S> PacketVertices<'_, S> {
+impl<S: LaneState> PacketVertices<'_, S> {
     /// The surface that a lane `hit`.
     #[inline]
     pub fn surface(&self, lane: usize, hit: Hit) -> SurfaceInteraction {
@@ -158,7 +166,7 @@ impl<S> PacketVertices<'_, S> {
     /// The cone of the ray from the surface on that a lane hit.
     #[inline]
     pub fn cone(&self, lane: usize) -> RayCone {
-        self.lanes[lane].cone.after(self.surfaces.all().distance[lane])
+        self.lanes.cone(lane).after(self.surfaces.all().distance[lane])
     }
 }
 
@@ -172,6 +180,7 @@ pub(super) struct Stage<'a, 's, E: Estimator> {
     /// The picture.
     pub view: &'s View,
     pub(super) estimator: &'s E,
+    pub(super) vectorizer: Vectorizer,
     /// What the paths of the batch carry.
     pub mode: TransportMode,
     /// Scattering events before this stage.
@@ -180,8 +189,8 @@ pub(super) struct Stage<'a, 's, E: Estimator> {
     pub slots: &'a mut [Slot],
     /// The estimator's own.
     pub memory: &'a mut E::Memory<'s>,
-    pub(super) shadows: &'a mut ShadowQueue<Contribution>,
-    pub(super) splats: &'a mut ShadowQueue<SplatContribution>,
+    pub(super) shadows: &'a mut ShadowQueue<ContributionLanes>,
+    pub(super) splats: &'a mut ShadowQueue<SplatLanes>,
     pub(super) landed: &'a mut Vec<SplatContribution>,
     pub(super) pending: &'a mut Vec<Batch<E::State>>,
     pub(super) spare: &'a mut Vec<Batch<E::State>>,
@@ -217,12 +226,39 @@ impl<E: Estimator> Stage<'_, '_, E> {
             self.slot(lane).broken = true;
             return;
         }
-        if self.next.lanes.len() == WAVE_LANES as usize {
+        self.make_room(1);
+        self.next.paths.push(ray, *lane);
+    }
+
+    /// [`Self::go_on`] of the `chosen` ones of the paths that `lanes` become by `rays` that are valid.
+    #[inline(always)]
+    pub fn go_on_together(
+        &mut self,
+        chosen: LaneSet,
+        rays: &RayLanes,
+        next: &impl Columns<LanePacket<E::State>>,
+        lanes: &LanePacket<E::State>,
+    ) {
+        self.make_room(LANES);
+        self.next.paths.append(self.vectorizer, chosen, rays, next, lanes);
+    }
+
+    /// Notes that the `chosen` lanes have rays that cannot be traced.
+    #[inline]
+    pub fn note_broken(&mut self, chosen: LaneSet, lanes: &LanePacket<E::State>) {
+        for lane in chosen.lanes() {
+            self.slots[lanes.slot[lane] as usize].broken = true;
+        }
+    }
+
+    /// Begins another batch if the paths that are collected and `more` would be too many for one.
+    #[inline(always)]
+    fn make_room(&mut self, more: usize) {
+        if self.next.paths.len() + more > WAVE_LANES as usize {
             let depth = self.next.depth;
             self.finish_batch();
             self.start_batch(depth);
         }
-        self.next.push(lane, ray);
     }
 
     /// Adds `value` to the slot of a lane if nothing is between `si` and the point of a light that was sampled.
@@ -254,6 +290,18 @@ impl<E: Estimator> Stage<'_, '_, E> {
         }
     }
 
+    /// [`Self::add_unless_occluded`] of the `chosen` lanes of packets of `rays` that are valid.
+    #[inline(always)]
+    pub fn add_unless_occluded_together(
+        &mut self,
+        chosen: LaneSet,
+        rays: &RayLanes,
+        contributions: &impl Columns<ContributionLanes>,
+    ) {
+        let any = &ContributionLanes::default();
+        self.shadows.append(self.vectorizer, chosen, rays, contributions, any);
+    }
+
     /// Splats a contribution of a slot's light path if nothing is in the way of `ray`.
     pub fn splat_unless_occluded(&mut self, ray: &Ray, splat: SplatContribution) {
         if ray.is_valid() {
@@ -269,11 +317,11 @@ impl<E: Estimator> Stage<'_, '_, E> {
             self.slot(lane).broken = true;
             return;
         }
-        if self.passed.lanes.is_empty() {
+        if self.passed.paths.is_empty() {
             self.passed = self.spare.pop().unwrap_or_default();
             self.passed.restart(self.mode, self.depth);
         }
-        self.passed.push(lane, ray);
+        self.passed.paths.push(ray, *lane);
     }
 
     /// Begins to collect paths of `depth`.
@@ -285,7 +333,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Leaves the collected paths to be traced.
     pub(super) fn finish_batch(&mut self) {
         let batch = std::mem::take(&mut self.next);
-        if batch.lanes.is_empty() {
+        if batch.paths.is_empty() {
             self.spare.push(batch);
         } else {
             self.pending.push(batch);
@@ -295,7 +343,7 @@ impl<E: Estimator> Stage<'_, '_, E> {
     /// Leaves all paths that go on to be traced.
     pub(super) fn finish(&mut self) {
         let passed = std::mem::take(&mut self.passed);
-        if !passed.lanes.is_empty() {
+        if !passed.paths.is_empty() {
             self.pending.push(passed);
         }
         self.finish_batch();

@@ -193,6 +193,14 @@ impl AreaLight {
         }
     }
 
+    /// What it emits everywhere and at all wavelengths, if that is the same; in rgb mode the latter is.
+    pub(super) fn known_radiance(&self) -> Option<SampledSpectrum> {
+        match &self.radiance {
+            Radiance::Constant(radiance) => radiance.constant(),
+            Radiance::Image(..) => None,
+        }
+    }
+
     /// Its surface area, one side; at time 0 if it moves.
     pub fn area(&self) -> f32 {
         self.area

@@ -147,6 +147,14 @@ impl Light {
         }
     }
 
+    /// The same, if that is known without wavelengths.
+    fn known_radiance(&self) -> Option<SampledSpectrum> {
+        match self {
+            Self::Area(light) => light.known_radiance(),
+            _ => None,
+        }
+    }
+
     /// Radiance emitted at a surface point of the light in direction `w`; 0 for a light that has no surface.
     #[inline]
     pub fn le(&self, si: &SurfaceInteraction, w: Vec3, lambda: &Wavelengths) -> SampledSpectrum {

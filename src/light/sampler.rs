@@ -79,6 +79,15 @@ impl LightSampler {
         }
     }
 
+    /// What [`Self::sample`] always chooses, if there is but one light.
+    #[inline]
+    pub fn only(&self) -> Option<SampledLight> {
+        match &self.0 {
+            Kind::Bvh(tree) => tree.only(),
+            Kind::None | Kind::Table(_) => None,
+        }
+    }
+
     /// The probability with which [`Self::sample`] chooses `light` for the same point and normal.
     #[inline]
     pub fn pmf(&self, p: Vec3, n: Vec3, light: LightId) -> f32 {

@@ -1,6 +1,6 @@
 //! Numbers of the eight rays of a packet side by side, as a [`Kernel`](super::Kernel)'s loops want them.
 
-use super::{Vec2, Vec3};
+use super::{Vec2, Vec3, columns};
 
 /// Rays in a packet: the widest that both backends trace natively on AVX2.
 pub const LANES: usize = 8;
@@ -59,5 +59,15 @@ impl VectorLanes for Vec3Lanes {
     fn set(&mut self, lane: usize, v: Vec3) {
         let [x, y, z] = &mut self.0;
         [x[lane], y[lane], z[lane]] = v.to_array();
+    }
+}
+
+columns!(Vec3Lanes { 0 });
+
+impl Vec3Lanes {
+    /// The lanes of x, of y and of z.
+    #[inline(always)]
+    pub fn columns(&self) -> &[Lanes; 3] {
+        &self.0
     }
 }

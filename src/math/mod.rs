@@ -5,15 +5,20 @@
 
 mod bounds;
 mod frame;
+mod lane_set;
 mod lanes;
 mod motion;
 mod offset;
+mod packing;
 mod vectorize;
 
 pub use bounds::Bounds3;
 pub use frame::Frame;
 pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat2, Mat3, Mat4, Quat, Vec2, Vec3, Vec4};
+pub use lane_set::LaneSet;
 pub use lanes::{LANES, Lanes, Vec2Lanes, Vec3Lanes, VectorLanes};
 pub use motion::{AnimatedTransform, Decomposition, transform_point};
 pub use offset::{gamma, offset_ray_origin};
+pub(crate) use packing::columns;
+pub use packing::{Append, Columns, Each, Packing, Shuffle};
 pub use vectorize::{Kernel, Vectorizer};

@@ -18,4 +18,10 @@ impl Vectorizer {
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         self.0.dispatch(kernel)
     }
+
+    /// The instructions that it runs them with.
+    #[inline(always)]
+    pub(super) fn arch(self) -> Arch {
+        self.0
+    }
 }

@@ -11,6 +11,7 @@ mod sampler;
 mod sobol;
 mod sphere_map;
 mod stratified;
+mod stream_lanes;
 pub mod warp;
 mod windowed;
 mod zsobol;
@@ -22,6 +23,7 @@ pub use mis::{balance_heuristic, power_heuristic};
 pub use sampler::{SampleStream, Sampler, SamplerKind};
 pub use sphere_map::SphereMap;
 pub use stratified::Strata;
+pub use stream_lanes::StreamLanes;
 pub use windowed::WindowedDistribution;
 
 /// The largest number below one.

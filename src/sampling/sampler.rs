@@ -8,7 +8,6 @@ use super::sobol::{scramble_reversed, scrambled_points};
 use super::stratified::Strata;
 use super::zsobol::Order;
 use super::{halton, stratified, zsobol};
-use crate::math::{Kernel, Vectorizer};
 
 /// How the samples of a pixel relate to one another. All estimate the same, but for strata without jitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,20 +70,21 @@ impl Sampler {
     #[inline]
     pub fn start(&self, x: i32, y: i32, sample_index: u32) -> SampleStream {
         debug_assert!(sample_index < self.samples_per_pixel);
-        let (plan, [x, y]) = match self.kind {
-            SamplerKind::Independent => (Plan::Independent, [x, y]),
-            SamplerKind::Stratified(strata) => (Plan::Stratified(strata), [x, y]),
-            SamplerKind::Halton => (Plan::Halton(self.samples_per_pixel), [x, y]),
-            SamplerKind::Sobol => (Plan::Sobol, [x, y]),
+        let (plan, place, [x, y]) = match self.kind {
+            SamplerKind::Independent => (Plan::Independent, 0, [x, y]),
+            SamplerKind::Stratified(strata) => (Plan::Stratified(strata), 0, [x, y]),
+            SamplerKind::Halton => (Plan::Halton(self.samples_per_pixel), 0, [x, y]),
+            SamplerKind::Sobol => (Plan::Sobol, 0, [x, y]),
             SamplerKind::ZSobol => {
                 let (order, tile) = Order::new(self.samples_per_pixel, x, y);
-                (Plan::ZSobol(order), tile)
+                (Plan::ZSobol(order.log2_samples), order.place, tile)
             }
         };
         let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
         SampleStream {
             key: combine(mix64(self.seed ^ GOLDEN), pixel),
             reversed_index: sample_index.reverse_bits(),
+            place,
             plan,
         }
     }
@@ -105,29 +105,38 @@ impl Sampler {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleStream {
     /// A hash of seed, pixel (or tile of pixels) and branches.
-    key: u64,
-    reversed_index: u32,
-    plan: Plan,
+    pub(super) key: u64,
+    pub(super) reversed_index: u32,
+    /// Of the pixel, see [`Order::place`].
+    pub(super) place: u16,
+    pub(super) plan: Plan,
 }
 
-const _: () = assert!(size_of::<SampleStream>() <= 24);
+const _: () = assert!(size_of::<SampleStream>() <= 32);
 
-/// What a sampler of each kind has to know to draw.
+/// What a sampler of each kind has to know to draw: the same for all its streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Plan {
+pub(super) enum Plan {
     Independent,
     Stratified(Strata),
     /// For so many samples.
     Halton(u32),
     Sobol,
-    ZSobol(Order),
+    /// See [`Order::log2_samples`].
+    ZSobol(u8),
 }
 
 impl SampleStream {
     /// The four numbers of `group`, in [0, 1).
     #[inline]
     pub fn draw4(&self, group: u32) -> [f32; 4] {
-        draw(&[*self], group).map(|[number]| number)
+        let Self {
+            key,
+            reversed_index,
+            place,
+            plan,
+        } = *self;
+        draw([key], [reversed_index], [place.into()], plan, group).map(|[number]| number)
     }
 
     /// The first number of `group`, in [0, 1).
@@ -143,12 +152,6 @@ impl SampleStream {
         [x, y]
     }
 
-    /// [`Self::draw4`] of `N` streams of one sampler at once, lane by lane: the same numbers, several times faster.
-    #[inline]
-    pub fn draw4_lanes<const N: usize>(vectorizer: Vectorizer, streams: &[Self; N], group: u32) -> [[f32; N]; 4] {
-        vectorizer.run(DrawLanes { streams, group })
-    }
-
     /// The stream of branch `n` of this one, for a path that splits: independent of this stream, of its other branches and
     /// of theirs. For a fixed `n` the branches of a pixel's samples are as evenly distributed as the samples.
     #[inline]
@@ -162,26 +165,16 @@ impl SampleStream {
     }
 }
 
-/// See [`SampleStream::draw4_lanes`].
-struct DrawLanes<'a, const N: usize> {
-    streams: &'a [SampleStream; N],
-    group: u32,
-}
-
-impl<const N: usize> Kernel for DrawLanes<'_, N> {
-    type Output = [[f32; N]; 4];
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        draw(self.streams, self.group)
-    }
-}
-
 /// The four numbers of `group` of each stream; all are of one sampler.
 #[inline(always)]
-fn draw<const N: usize>(streams: &[SampleStream; N], group: u32) -> [[f32; N]; 4] {
-    let (keys, reversed_indices) = (streams.map(|s| s.key), streams.map(|s| s.reversed_index));
-    match streams[0].plan {
+pub(super) fn draw<const N: usize>(
+    keys: [u64; N],
+    reversed_indices: [u32; N],
+    places: [u32; N],
+    plan: Plan,
+    group: u32,
+) -> [[f32; N]; 4] {
+    match plan {
         Plan::Independent => each_lane(
             keys,
             reversed_indices,
@@ -191,13 +184,7 @@ fn draw<const N: usize>(streams: &[SampleStream; N], group: u32) -> [[f32; N]; 4
         Plan::Sobol => sobol(keys, reversed_indices, group),
         Plan::Stratified(strata) => stratified::draw(keys, reversed_indices.map(u32::reverse_bits), strata, group),
         Plan::Halton(samples) => halton::draw(keys, reversed_indices.map(u32::reverse_bits), samples, group),
-        Plan::ZSobol(first) => {
-            let orders = streams.map(|stream| match stream.plan {
-                Plan::ZSobol(order) => order,
-                _ => first,
-            });
-            zsobol::draw(keys, reversed_indices, orders, group)
-        }
+        Plan::ZSobol(log2_samples) => zsobol::draw(keys, reversed_indices, log2_samples, places, group),
     }
 }
 
@@ -238,6 +225,8 @@ fn sobol<const N: usize>(keys: [u64; N], reversed_indices: [u32; N], group: u32)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::{LANES, Vectorizer};
+    use crate::sampling::StreamLanes;
 
     const KINDS: [SamplerKind; 6] = [
         SamplerKind::Independent,
@@ -284,12 +273,19 @@ mod tests {
     fn lanes_get_the_numbers_of_their_streams() {
         for kind in KINDS {
             let sampler = Sampler::new(kind, 3, 64);
-            let streams: [_; 8] =
+            let streams: [_; LANES] =
                 std::array::from_fn(|i| sampler.start(i as i32 - 3, 7, 5 * i as u32).branch(i as u32 % 3));
+            let mut lanes = StreamLanes::all(streams[0]);
+            for (i, stream) in streams.into_iter().enumerate() {
+                lanes.set(i, stream);
+            }
             for group in [0, 11, 300] {
-                let lanes = SampleStream::draw4_lanes(Vectorizer::default(), &streams, group);
+                let [numbers, some] = lanes.draw::<0b1111, 0b1001>(Vectorizer::default(), group);
                 for (i, stream) in streams.iter().enumerate() {
-                    assert_eq!(lanes.map(|numbers| numbers[i]), stream.draw4(group), "{kind:?}");
+                    assert_eq!(lanes.get(i), *stream, "{kind:?}");
+                    assert_eq!(numbers.map(|numbers| numbers[i]), stream.draw4(group), "{kind:?}");
+                    let [x, _, _, w] = stream.draw4(group + 1);
+                    assert_eq!(some.map(|numbers| numbers[i]), [x, 0.0, 0.0, w], "{kind:?}");
                 }
             }
         }

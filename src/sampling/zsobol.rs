@@ -21,7 +21,7 @@ pub(super) struct Order {
     /// Binary digits of the number of samples in a pixel.
     pub log2_samples: u8,
     /// Where the pixel is on its tile's Morton curve.
-    place: u16,
+    pub place: u16,
 }
 
 impl Order {
@@ -65,17 +65,16 @@ fn permute_digit(digit: u32, hash: u32) -> u32 {
     of_1 ^ of_2 ^ (hash & 3)
 }
 
-/// The four numbers of `group` in each lane. The keys are those of tiles, not of pixels.
+/// The four numbers of `group` in each lane, for [`Order`]s of one number of samples. The keys are those of tiles, not of pixels.
 #[inline(always)]
 pub(super) fn draw<const N: usize>(
     keys: [u64; N],
     reversed_indices: [u32; N],
-    orders: [Order; N],
+    log2_samples: u8,
+    places: [u32; N],
     group: u32,
 ) -> [[f32; N]; 4] {
-    // All lanes are of one sampler.
-    let log2_samples = u32::from(orders[0].log2_samples);
-    let places = orders.map(|order| u32::from(order.place));
+    let log2_samples = u32::from(log2_samples);
     let hashes = keys.map(|key| split_mix(key, u64::from(group)));
     let mut permuted = [0_u32; N];
     for level in (0..levels(log2_samples)).rev() {

@@ -8,6 +8,7 @@ use std::time::Instant;
 use super::attributes::{self, AttributeTables};
 use super::lights::LightBuilder;
 use super::materials::compile_materials;
+use super::matte;
 use super::media;
 use super::shapes::{animated, place};
 use super::spectra::SpectrumCompiler;
@@ -106,7 +107,10 @@ impl Scene {
             LightSamplerKind::Uniform => LightSampler::uniform(&builder.lights.lights),
         };
         let moves = world.moves() || desc.lights.iter().any(|light| !light.world_from_light.is_static());
+        let known_albedo =
+            |surface: &Surface| matte::known_albedo(&materials[surface.material as usize], !surface.lights.is_empty());
         Ok(Self {
+            known_albedos: builder.surfaces.iter().map(known_albedo).collect(),
             world,
             moves,
             accel,

@@ -6,6 +6,7 @@ mod build;
 mod cutouts;
 mod lights;
 mod materials;
+mod matte;
 mod media;
 mod shapes;
 mod spectra;
@@ -17,13 +18,13 @@ mod view;
 use std::sync::Arc;
 
 use crate::accel::{Accel, Backend, BuildOptions};
-use crate::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction, World};
+use crate::geometry::{GeometryId, PrimitiveId, SurfaceInteraction, World};
 use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::{Bounds3, Vec3};
 use crate::medium::{HomogeneousMedium, MediumId};
-use crate::spectrum::ColorMode;
-use crate::texture::{FloatTexture, SpectrumTexture};
+use crate::spectrum::{ColorMode, SampledSpectrum};
+use crate::texture::FloatTexture;
 
 use media::MediumInterface;
 pub use view::{View, ViewOverrides};
@@ -49,6 +50,8 @@ pub struct Scene {
     media: Vec<HomogeneousMedium>,
     /// By geometry.
     surfaces: Vec<Surface>,
+    /// By geometry, see [`Scene::known_albedo`].
+    known_albedos: Vec<Option<SampledSpectrum>>,
     /// Whether any material may refract wavelengths differently.
     disperses: bool,
     /// Whether any of the surfaces is only a boundary between media.
@@ -121,17 +124,6 @@ impl Scene {
         &self.materials[self.surfaces[geometry.index()].material as usize]
     }
 
-    /// The reflectance of what was hit, if it is Lambertian and nothing else there: no light.
-    #[inline]
-    pub fn lambertian(&self, hit: Hit) -> Option<&SpectrumTexture> {
-        let surface = &self.surfaces[hit.geometry.index()];
-        let emits = surface.lights.get(hit.primitive.index()).is_some_and(Option::is_some);
-        if emits {
-            return None;
-        }
-        self.materials[surface.material as usize].lambertian()
-    }
-
     /// All materials.
     pub fn materials(&self) -> &[Material] {
         &self.materials
@@ -190,6 +182,12 @@ impl Scene {
     #[inline]
     pub fn light(&self, id: LightId) -> &Light {
         &self.lights[id.index()]
+    }
+
+    /// Whether a ray meets any light when it leaves the scene.
+    #[inline]
+    pub fn has_environment(&self) -> bool {
+        !self.environments.is_empty()
     }
 
     /// The lights that a ray meets when it leaves the scene.

@@ -34,6 +34,15 @@ impl CompiledSpectrum {
         }
     }
 
+    /// Its values at any wavelengths, if those are the same; in rgb mode they are.
+    #[inline]
+    pub fn constant(&self) -> Option<SampledSpectrum> {
+        match self.form {
+            Form::Constant(lanes) => Some(lanes),
+            _ => None,
+        }
+    }
+
     fn sample_varying(&self, wavelengths: &Wavelengths) -> SampledSpectrum {
         match &self.form {
             Form::Constant(lanes) => *lanes,

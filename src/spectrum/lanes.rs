@@ -1,7 +1,7 @@
 //! The spectral values of eight paths side by side.
 
 use super::SampledSpectrum;
-use crate::math::Lanes;
+use crate::math::{Lanes, columns};
 
 /// A [`SampledSpectrum`] for each lane of a packet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -9,6 +9,12 @@ use crate::math::Lanes;
 pub struct SpectrumLanes([Lanes; super::LANES]);
 
 impl SpectrumLanes {
+    /// The same value in all lanes.
+    #[inline(always)]
+    pub fn all(value: SampledSpectrum) -> Self {
+        Self(value.0.map(|value| [value; _]))
+    }
+
     /// The value of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> SampledSpectrum {
@@ -23,3 +29,5 @@ impl SpectrumLanes {
         [a[lane], b[lane], c[lane], d[lane]] = value.0;
     }
 }
+
+columns!(SpectrumLanes { 0 });

@@ -26,7 +26,7 @@ use self::pyramid::Record;
 pub use self::pyramid::{Pyramid, StrategyLayer};
 use super::adjoint::adjoint_correction;
 use super::fault::Fault;
-use super::lane::Lane;
+use super::lane::{Lane, LaneState};
 use super::numbers::EventNumbers;
 use super::path::survival;
 use super::stage::{Estimator, Retiring, Stage, Vertex};
@@ -34,7 +34,7 @@ use crate::desc::Heuristic;
 use crate::film::Film;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
-use crate::math::Vec3;
+use crate::math::{Each, Vec3};
 use crate::sampling::SampleStream;
 use crate::scene::{Scene, View};
 
@@ -75,6 +75,10 @@ pub(super) struct State {
     found: f32,
 }
 
+impl LaneState for State {
+    type Lanes = Each<Self>;
+}
+
 /// How a ray began.
 #[derive(Clone, Copy, Debug)]
 enum Origin {
@@ -95,7 +99,7 @@ struct Event<'a, 's> {
     si: &'a SurfaceInteraction,
     bsdf: Bsdf<'s>,
     partial: Partial,
-    numbers: &'a EventNumbers,
+    numbers: EventNumbers,
     cone: RayCone,
 }
 
@@ -204,7 +208,7 @@ impl BdptIntegrator {
             si,
             bsdf: scene.material(si.hit.geometry).bsdf(si, lambda),
             partial,
-            numbers: vertex.numbers,
+            numbers: vertex.numbers(),
             cone: vertex.cone,
         }
     }

@@ -12,8 +12,9 @@ use super::lane::Lane;
 use super::numbers::EventNumbers;
 use super::stage::{Estimator, PacketVertices, Stage, Vertex};
 use crate::desc::{Heuristic, Strategy};
-use crate::geometry::{LANES, Ray, RayCone, SurfaceInteraction};
+use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::material::{Bsdf, Density, TransportMode};
+use crate::math::LaneSet;
 use crate::scene::View;
 use together::Together;
 
@@ -63,7 +64,7 @@ impl Estimator for PathIntegrator {
     }
 
     #[inline]
-    fn shade_together<'s>(&self, stage: &mut PathStage<'_, 's>, packet: &PacketVertices<'_, Origin>) -> [bool; LANES] {
+    fn shade_together<'s>(&self, stage: &mut PathStage<'_, 's>, packet: &PacketVertices<'_, Origin>) -> LaneSet {
         self.scatter_together(stage, packet)
     }
 
@@ -86,7 +87,7 @@ impl Estimator for PathIntegrator {
             lane,
             si,
             bsdf: &bsdf,
-            numbers: vertex.numbers,
+            numbers: &vertex.numbers(),
             cone,
         };
         if self.splitting == 1 || lane.split || bsdf.is_delta() {

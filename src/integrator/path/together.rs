@@ -1,22 +1,26 @@
-//! The commonest scattering event, of eight paths at once: by Lambertian surfaces that do not emit.
+//! The commonest scattering event, of eight paths at once: by Lambertian surfaces that do not emit. Paths that leave a scene without
+//! an environment end here too.
 //! The bits are those of [`PathIntegrator::scatter`], which takes the other paths.
 
 use std::f32::consts::FRAC_1_PI;
 
-use super::{PathIntegrator, PathStage, survival};
+use super::{FIRST_ROULETTE_DEPTH, PathIntegrator, PathStage, survival};
 use crate::desc::{Heuristic, Strategy};
-use crate::geometry::{Ray, RayPacket, Surfaces};
+use crate::geometry::{Ray, RayLanes, RayPacket, Surfaces};
 use crate::integrator::direct::Origin;
 use crate::integrator::fault::Fault;
-use crate::integrator::lane::{Lane, NO_SLOT, Slot};
-use crate::integrator::numbers::EventLanes;
-use crate::integrator::shadow::{Contribution, NO_NOTE};
+use crate::integrator::lane::{LanePacket, Slot};
+use crate::integrator::numbers::LambertianLanes;
+use crate::integrator::shadow::{ContributionLanes, NO_NOTE};
 use crate::integrator::stage::PacketVertices;
-use crate::light::{ChosenLight, LightLanes, LightSampleLanes};
-use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer, offset_ray_origin};
-use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic, warp};
+use crate::light::{ChosenLight, LightLanes, LightSampleLanes, SampledLight};
+use crate::math::{
+    Columns, Frame, Kernel, LANES, LaneSet, Lanes, Packing, Shuffle, Vec2, Vec3, VectorLanes, Vectorizer,
+    offset_ray_origin,
+};
+use crate::sampling::{balance_heuristic, power_heuristic, warp};
 use crate::scene::Scene;
-use crate::spectrum::{SampledSpectrum, SpectrumLanes};
+use crate::spectrum::{SampledSpectrum, SpectrumLanes, Wavelengths};
 
 /// What eight paths are computed with. Made once and used again and again.
 #[derive(Debug, Default)]
@@ -30,150 +34,219 @@ pub(in crate::integrator) struct Together {
 #[derive(Debug, Default)]
 struct Paths {
     albedo: SpectrumLanes,
-    beta: SpectrumLanes,
-    eta_scale: Lanes,
     /// Of the light that each samples; 1 without.
     pmf: Lanes,
 }
 
-/// Where they go from there.
+/// Where they go from there. Shadow rays and paths are sent from the columns in which they are computed.
 #[derive(Debug, Default)]
 struct Scattered {
-    /// Whether light was found that arrives if nothing is between.
+    /// Whether light was found that arrives if nothing is between, by which ray, and what it brings.
     connects: [bool; LANES],
     shadow_is_valid: [bool; LANES],
-    shadow_origin: Vec3Lanes,
-    shadow_direction: Vec3Lanes,
-    shadow_tfar: Lanes,
-    /// What it brings.
+    shadow_rays: RayLanes,
     value: SpectrumLanes,
+    /// Whether the path goes on, and by which ray.
     goes_on: [bool; LANES],
     next_is_valid: [bool; LANES],
-    origin: Vec3Lanes,
-    direction: Vec3Lanes,
+    next_rays: RayLanes,
     beta: SpectrumLanes,
     /// Of the direction, by solid angle.
     pdf: Lanes,
+    cone_width: Lanes,
 }
 
 impl PathIntegrator {
-    /// Takes the paths of `packet` to their next events that are such as above, and says which those are.
+    /// Takes the paths of `packet` to their next events that are such as above, or into the dark, and says which those are.
     #[inline]
     pub(super) fn scatter_together(
         &self,
         stage: &mut PathStage<'_, '_>,
         packet: &PacketVertices<'_, Origin>,
-    ) -> [bool; LANES] {
+    ) -> LaneSet {
         // Of a path that has been split the order of what it brings would depend on the packets that its parts are in.
         let is_usual = self.strategy == Strategy::Mis && self.splitting == 1 && self.fault == Fault::None;
         if !is_usual || self.max_depth == Some(stage.depth) {
-            return [false; LANES];
+            return LaneSet::NONE;
         }
+        let (scene, slots) = (stage.scene, &*stage.slots);
+        let hit = packet.hits.hit_lanes();
+        let ended = if scene.has_environment() {
+            LaneSet::NONE
+        } else {
+            packet.active.without(hit)
+        };
         let Together {
             vectorizer,
             lights,
             paths,
         } = &mut *stage.memory;
-        let (taken, chosen) = paths.gather(stage.scene, stage.slots, packet);
-        if taken == [false; LANES] {
-            return taken;
+        let taken = paths.gather(scene, slots, packet);
+        if taken.is_empty() {
+            return ended;
         }
-        let surfaces = packet.surfaces.all();
-        let lights = &lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
+        let (surfaces, only_light) = (packet.surfaces.all(), scene.light_sampler().only());
+        let may_end = stage.depth >= FIRST_ROULETTE_DEPTH;
+        let has_others = !packet.active.and(hit).without(taken).is_empty();
+        let numbers = &packet.numbers.lambertian(only_light.is_none(), may_end, has_others);
+        match only_light {
+            Some(SampledLight { light, pmf })
+                if lights.sample_one(light, scene.light(light), &surfaces.p, numbers.light()) =>
+            {
+                paths.pmf = [pmf; LANES];
+            }
+            _ => {
+                let chosen = paths.choose_lights(scene, slots, packet, taken, numbers.which_light());
+                lights.sample(&chosen, &surfaces.p, &packet.rays.time, numbers.light());
+            }
+        }
         let scattered = vectorizer.run(Scatter {
             rays: packet.rays,
+            lanes: packet.lanes,
             surfaces,
-            numbers: packet.numbers,
+            numbers,
             paths,
-            lights,
+            lights: lights.samples(),
             is_power: self.heuristic == Heuristic::Power,
             depth: stage.depth,
             is_unlimited: self.max_depth.is_none(),
         });
-        for (i, lane) in packet.lanes.iter().enumerate() {
-            if taken[i] {
-                scattered.send(stage, packet, i, lane);
-            }
-        }
-        taken
-    }
-}
-
-impl Paths {
-    /// Takes up the paths of `packet` that are at Lambertian surfaces; says which those are, and the light that each is to sample.
-    #[inline]
-    fn gather<'a>(
-        &mut self,
-        scene: &'a Scene,
-        slots: &'a [Slot],
-        packet: &PacketVertices<'_, Origin>,
-    ) -> ([bool; LANES], [Option<ChosenLight<'a>>; LANES]) {
-        let surfaces = packet.surfaces.all();
-        let (mut taken, mut chosen) = ([false; LANES], [None; LANES]);
-        for (i, lane) in packet.lanes.iter().enumerate() {
-            if lane.slot == NO_SLOT || !packet.rays.is_active(i) {
-                continue;
-            }
-            let Some(hit) = packet.hits.get(i) else { continue };
-            let Some(reflectance) = scene.lambertian(hit) else {
-                continue;
-            };
-            let lambda = &slots[lane.slot as usize].lambda;
-            let albedo = match reflectance.constant() {
-                Some(spectrum) => spectrum.sample(lambda),
-                None => reflectance.reflectance_at(&packet.surface(i, hit), lambda),
-            };
-            taken[i] = true;
-            self.albedo.set(i, albedo);
-            self.beta.set(i, lane.beta);
-            self.eta_scale[i] = lane.eta_scale;
-            let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
-            let light = scene.light_sampler().sample(p, n, packet.numbers.which_light()[i]);
-            self.pmf[i] = light.map_or(1.0, |light| light.pmf);
-            chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
-        }
-        (taken, chosen)
+        scattered.send(stage, packet, taken);
+        taken.or(ended)
     }
 }
 
 impl Scattered {
-    /// Sends a path on its way, and a shadow ray.
-    #[inline]
-    fn send(&self, stage: &mut PathStage<'_, '_>, packet: &PacketVertices<'_, Origin>, i: usize, lane: &Lane<Origin>) {
-        let time = packet.rays.time[i];
-        if self.connects[i] {
-            let ray = Ray {
-                tfar: self.shadow_tfar[i],
-                ..Ray::new(self.shadow_origin.get(i), self.shadow_direction.get(i), time)
-            };
-            let (slot, note) = (lane.slot, NO_NOTE);
-            let value = self.value.get(i);
-            stage.add_unless_occluded_if(self.shadow_is_valid[i], &ray, Contribution { slot, note, value });
-        }
-        if !self.goes_on[i] {
-            return;
-        }
-        let surfaces = packet.surfaces.all();
-        let next = Lane {
-            beta: self.beta.get(i),
-            cone: packet.cone(i),
-            state: Origin::Sampled {
-                p: surfaces.p.get(i),
-                n: surfaces.ns.get(i),
-                pdf: SolidAnglePdf(self.pdf[i]),
-            },
-            ..*lane
+    /// Sends the paths that were taken on their way, and shadow rays.
+    #[inline(always)]
+    fn send(&self, stage: &mut PathStage<'_, '_>, packet: &PacketVertices<'_, Origin>, taken: LaneSet) {
+        let (lanes, surfaces, scattered) = (packet.lanes, packet.surfaces.all(), self);
+        let (connects, goes_on) = (taken.and(self.connects.into()), taken.and(self.goes_on.into()));
+        let (shadow_is_valid, next_is_valid) = (self.shadow_is_valid.into(), self.next_is_valid.into());
+        stage.note_broken(connects.without(shadow_is_valid), lanes);
+        stage.note_broken(goes_on.without(next_is_valid), lanes);
+        let connected = Connected { lanes, scattered };
+        stage.add_unless_occluded_together(connects.and(shadow_is_valid), &self.shadow_rays, &connected);
+        let next = Next {
+            lanes,
+            surfaces,
+            scattered,
         };
-        let ray = Ray::new(self.origin.get(i), self.direction.get(i), time);
-        stage.go_on_if(self.next_is_valid[i], &next, &ray);
+        stage.go_on_together(goes_on.and(next_is_valid), &self.next_rays, &next, lanes);
     }
+}
+
+/// What lights bring to paths.
+struct Connected<'a> {
+    lanes: &'a LanePacket<Origin>,
+    scattered: &'a Scattered,
+}
+
+impl Columns<ContributionLanes> for Connected<'_> {
+    #[inline(always)]
+    fn pack<S: Shuffle>(&self, packing: &Packing<S>, last: &mut ContributionLanes, next: &mut ContributionLanes) {
+        self.lanes.slot.pack(packing, &mut last.slot, &mut next.slot);
+        packing.fill(NO_NOTE, &mut last.note, &mut next.note);
+        self.scattered.value.pack(packing, &mut last.value, &mut next.value);
+    }
+}
+
+/// Paths after their events.
+struct Next<'a> {
+    lanes: &'a LanePacket<Origin>,
+    surfaces: &'a Surfaces,
+    scattered: &'a Scattered,
+}
+
+impl Columns<LanePacket<Origin>> for Next<'_> {
+    #[inline(always)]
+    fn pack<S: Shuffle>(&self, packing: &Packing<S>, last: &mut LanePacket<Origin>, next: &mut LanePacket<Origin>) {
+        let Self {
+            lanes,
+            surfaces,
+            scattered,
+        } = self;
+        lanes.slot.pack(packing, &mut last.slot, &mut next.slot);
+        lanes.split.pack(packing, &mut last.split, &mut next.split);
+        lanes.streams.pack(packing, &mut last.streams, &mut next.streams);
+        lanes.eta_scale.pack(packing, &mut last.eta_scale, &mut next.eta_scale);
+        lanes
+            .cone_spread
+            .pack(packing, &mut last.cone_spread, &mut next.cone_spread);
+        scattered.beta.pack(packing, &mut last.beta, &mut next.beta);
+        scattered
+            .cone_width
+            .pack(packing, &mut last.cone_width, &mut next.cone_width);
+        surfaces.p.pack(packing, &mut last.states.p, &mut next.states.p);
+        surfaces.ns.pack(packing, &mut last.states.n, &mut next.states.n);
+        scattered.pdf.pack(packing, &mut last.states.pdf, &mut next.states.pdf);
+    }
+}
+
+impl Paths {
+    /// Takes up the paths of `packet` that are at Lambertian surfaces; says which those are.
+    #[inline]
+    fn gather(&mut self, scene: &Scene, slots: &[Slot], packet: &PacketVertices<'_, Origin>) -> LaneSet {
+        let mut taken = [false; LANES];
+        for i in packet.active.lanes() {
+            let known = scene.known_albedo(packet.hits.geometry[i]);
+            let albedo = known.or_else(|| {
+                let lambda = &slots[packet.lanes.slot[i] as usize].lambda;
+                albedo_of_hit(scene, packet, i, lambda)
+            });
+            if let Some(albedo) = albedo {
+                self.albedo.set(i, albedo);
+                taken[i] = true;
+            }
+        }
+        taken.into()
+    }
+
+    /// The light that each path is to sample.
+    #[inline]
+    fn choose_lights<'a>(
+        &mut self,
+        scene: &'a Scene,
+        slots: &'a [Slot],
+        packet: &PacketVertices<'_, Origin>,
+        taken: LaneSet,
+        which_light: &Lanes,
+    ) -> [Option<ChosenLight<'a>>; LANES] {
+        let surfaces = packet.surfaces.all();
+        let mut chosen = [None; LANES];
+        for i in taken.lanes() {
+            let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
+            let light = scene.light_sampler().sample(p, n, which_light[i]);
+            self.pmf[i] = light.map_or(1.0, |light| light.pmf);
+            let lambda = &slots[packet.lanes.slot[i] as usize].lambda;
+            chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
+        }
+        chosen
+    }
+}
+
+/// The reflectance of what a lane hit, if it is Lambertian and no light.
+#[inline]
+fn albedo_of_hit(
+    scene: &Scene,
+    packet: &PacketVertices<'_, Origin>,
+    lane: usize,
+    lambda: &Wavelengths,
+) -> Option<SampledSpectrum> {
+    let hit = packet.hits.get(lane)?;
+    let reflectance = scene.lambertian(hit)?;
+    Some(match reflectance.constant() {
+        Some(spectrum) => spectrum.sample(lambda),
+        None => reflectance.reflectance_at(&packet.surface(lane, hit), lambda),
+    })
 }
 
 /// See [`PathIntegrator::scatter_together`].
 struct Scatter<'a> {
     rays: &'a RayPacket,
+    lanes: &'a LanePacket<Origin>,
     surfaces: &'a Surfaces,
-    numbers: &'a EventLanes,
+    numbers: &'a LambertianLanes,
     paths: &'a Paths,
     lights: &'a LightSampleLanes,
     is_power: bool,
@@ -217,7 +290,7 @@ impl Scatter<'_> {
         };
         let weight = if lights.is_delta[i] { 1.0 } else { weight };
         let value = f * cos * lights.li.get(i) * (1.0 / pmf / pdf);
-        scattered.value.set(i, self.paths.beta.get(i) * (value * weight));
+        scattered.value.set(i, self.lanes.beta.get(i) * (value * weight));
 
         let (p, error, ng) = (surfaces.p.get(i), surfaces.error[i], surfaces.ng.get(i));
         let (to, time) = (lights.p.get(i), self.rays.time[i]);
@@ -231,34 +304,35 @@ impl Scatter<'_> {
             ..Ray::new(origin, direction, time)
         };
         scattered.shadow_is_valid[i] = ray.is_valid();
-        scattered.shadow_origin.set(i, origin);
-        scattered.shadow_direction.set(i, direction);
-        scattered.shadow_tfar[i] = tfar;
+        scattered.shadow_rays.set(i, origin, direction, tfar, time);
     }
 
     /// The direction that a path goes on in, and whether it survives.
     #[inline(always)]
     fn go_on(&self, scattered: &mut Scattered, i: usize, cos_o: f32, f: SampledSpectrum) {
-        let surfaces = self.surfaces;
+        let (surfaces, lanes) = (self.surfaces, self.lanes);
         let [u, v] = self.numbers.bsdf();
         let mut local = warp::sample_cosine_hemisphere(Vec2::new(u[i], v[i]));
         local.z = if cos_o < 0.0 { -local.z } else { local.z };
         let cos = local.z.abs();
         let pdf = cos * FRAC_1_PI;
-        let beta = self.paths.beta.get(i) * (f * (cos / pdf));
+        let beta = lanes.beta.get(i) * (f * (cos / pdf));
         let direction = Frame::from_normal(surfaces.ns.get(i)).to_world(local).normalize();
-        let throughput = beta.max_value() * self.paths.eta_scale[i];
+        let throughput = beta.max_value() * lanes.eta_scale[i];
         let survival = survival(self.depth, throughput, self.is_unlimited);
         let survives = (survival >= 1.0) | (self.numbers.roulette()[i] < survival);
         let thinned = if survival < 1.0 { 1.0 / survival } else { 1.0 };
         scattered.goes_on[i] = (cos_o != 0.0) & (local.z != 0.0) & !f.is_black() & survives;
         scattered.beta.set(i, beta * thinned);
         scattered.pdf[i] = pdf;
+        scattered.cone_width[i] = lanes.cone(i).after(surfaces.distance[i]).width;
 
-        let origin = offset_ray_origin(surfaces.p.get(i), surfaces.error[i], surfaces.ng.get(i), direction);
-        scattered.next_is_valid[i] = Ray::new(origin, direction, self.rays.time[i]).is_valid();
-        scattered.origin.set(i, origin);
-        scattered.direction.set(i, direction);
+        let (origin, time) = (
+            offset_ray_origin(surfaces.p.get(i), surfaces.error[i], surfaces.ng.get(i), direction),
+            self.rays.time[i],
+        );
+        scattered.next_is_valid[i] = Ray::new(origin, direction, time).is_valid();
+        scattered.next_rays.set(i, origin, direction, f32::INFINITY, time);
     }
 }
 

@@ -6,11 +6,12 @@ use crate::desc::{Heuristic, Strategy, Term, Terms};
 use crate::geometry::{RayCone, SurfaceInteraction};
 use crate::integrator::direct::{DirectLight, Origin};
 use crate::integrator::fault::Fault;
-use crate::integrator::lane::Lane;
+use crate::integrator::lane::{Lane, LaneState};
 use crate::integrator::numbers::EventNumbers;
 use crate::integrator::path::survival;
 use crate::integrator::stage::{Estimator, Stage, Vertex};
 use crate::material::{Bsdf, BsdfSample, Density, TransportMode};
+use crate::math::Each;
 
 /// What a camera path of photon mapping knows of its way.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,10 @@ pub(super) struct EyeState {
     pub phase: Phase,
     /// Whether its secondary wavelengths have ended.
     pub hero_only: bool,
+}
+
+impl LaneState for EyeState {
+    type Lanes = Each<Self>;
 }
 
 /// What is next on a camera path.

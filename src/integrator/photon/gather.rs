@@ -93,7 +93,7 @@ impl Estimator for GatherPass<'_> {
         let Some(event) = self.eye.arrive(stage, &vertex) else {
             return;
         };
-        let (lane, numbers) = (vertex.lane, vertex.numbers);
+        let (lane, numbers) = (vertex.lane, &vertex.numbers());
         if event.bsdf.is_specular() {
             self.eye.pass_specular(stage, &event, (lane, numbers));
             return;

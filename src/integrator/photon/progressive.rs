@@ -66,7 +66,7 @@ impl Estimator for ProgressivePass<'_> {
         let Some(event) = self.eye.arrive(stage, &vertex) else {
             return;
         };
-        let way = (vertex.lane, vertex.numbers);
+        let way = (vertex.lane, &vertex.numbers());
         match vertex.lane.state.phase {
             Phase::Eye if event.bsdf.is_specular() => self.eye.pass_specular(stage, &event, way),
             Phase::Eye => self.first_diffuse(stage, &event, &vertex),
@@ -80,7 +80,7 @@ impl ProgressivePass<'_> {
     /// The first surface that is not specular: all light that arrives there.
     fn first_diffuse(&self, stage: &mut Stage<'_, '_, Self>, event: &Event<'_, '_>, vertex: &Vertex<'_, EyeState>) {
         let (si, bsdf) = (event.si, &event.bsdf);
-        let (lane, numbers) = (vertex.lane, vertex.numbers);
+        let (lane, numbers) = (vertex.lane, &vertex.numbers());
         self.eye.sample_light(stage, event, (lane, numbers), lane.state.term, 1);
         let receiver = Receiver::new(si, stage.depth, self.eye.max_depth);
         let footprint = si.footprint / stage.view.detail_scale();

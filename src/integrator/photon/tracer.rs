@@ -5,11 +5,12 @@ use super::stored::Photon;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::integrator::adjoint::adjoint_correction;
 use crate::integrator::emission::sample_emission;
-use crate::integrator::lane::Lane;
+use crate::integrator::lane::{Lane, LaneState};
 use crate::integrator::numbers::EmissionNumbers;
 use crate::integrator::path::{LAST_SURVIVAL, LAST_SURVIVAL_DEPTH};
 use crate::integrator::stage::{Estimator, Stage, Vertex};
 use crate::material::{Density, TransportMode};
+use crate::math::Each;
 use crate::sampling::SampleStream;
 use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
@@ -50,6 +51,10 @@ pub(super) struct State {
     met: Met,
     /// Whether its secondary wavelengths have ended.
     hero_only: bool,
+}
+
+impl LaneState for State {
+    type Lanes = Each<Self>;
 }
 
 /// A photon and the path (of its wave) that brought it.
@@ -112,8 +117,8 @@ impl Estimator for PhotonTracer<'_> {
         if !is_specular {
             self.land(stage, lane, si);
         }
-        let mode = TransportMode::Importance;
-        let Some(sample) = bsdf.sample_f(si.wo, vertex.numbers.lobe, vertex.numbers.bsdf, mode) else {
+        let (mode, numbers) = (TransportMode::Importance, vertex.numbers());
+        let Some(sample) = bsdf.sample_f(si.wo, numbers.lobe, numbers.bsdf, mode) else {
             return;
         };
         let met = match sample.density {
@@ -131,7 +136,7 @@ impl Estimator for PhotonTracer<'_> {
         }
         // What survives has the power that arrived.
         let left = beta.max_value() / lane.beta.max_value();
-        let Some(survival) = survives(left, vertex.numbers.roulette, stage.depth, self.max_depth) else {
+        let Some(survival) = survives(left, numbers.roulette, stage.depth, self.max_depth) else {
             return;
         };
         let next = Lane {

@@ -15,7 +15,7 @@ use shadows::{LightOnItsWay, MediaShadows};
 
 use super::RenderStats;
 use super::direct::{Origin, Viewpoint};
-use super::lane::{Lane, Slot};
+use super::lane::{Lane, LaneState, Slot};
 use super::numbers::{DETECTOR_GROUP, EventNumbers};
 use super::path::PathIntegrator;
 use super::shadow::shadow_ray;
@@ -24,7 +24,7 @@ use crate::desc::Strategy;
 use crate::geometry::{Ray, RayCone, SurfaceInteraction};
 use crate::light::LightEnd;
 use crate::material::{Bsdf, Density, TransportMode};
-use crate::math::Vec3;
+use crate::math::{Each, Vec3};
 use crate::medium::{HenyeyGreenstein, MediumId};
 use crate::sampling::power_heuristic;
 use crate::scene::{Scene, View};
@@ -42,6 +42,10 @@ pub(super) struct Traveller {
     medium: Option<MediumId>,
     /// None before its first stage.
     flight: Option<Flight>,
+}
+
+impl LaneState for Traveller {
+    type Lanes = Each<Self>;
 }
 
 type TravelLane = Lane<Traveller>;
@@ -107,7 +111,8 @@ impl Estimator for VolumePath {
     }
 
     fn shade<'s>(&self, stage: &mut VolumeStage<'_, 's>, vertex: Vertex<'_, Traveller>) {
-        let Vertex { ray, numbers, cone, .. } = vertex;
+        let Vertex { ray, cone, .. } = vertex;
+        let numbers = &vertex.numbers();
         let scene = stage.scene;
         let mut lane = *vertex.lane;
         let slot = &mut stage.slots[lane.slot as usize];
@@ -173,6 +178,7 @@ impl VolumePath {
         let medium = stage.scene.medium(lane.state.medium?);
         let slot = &mut stage.slots[lane.slot as usize];
         let at = medium.at(&slot.lambda);
+        let numbers = &vertex.numbers();
         slot.l += lane.beta * at.emission(segment.length);
         if let Some(phase) = medium.phase {
             let passage = Passage {
@@ -181,12 +187,12 @@ impl VolumePath {
                 at: &at,
                 phase,
                 segment: *segment,
-                numbers: vertex.numbers,
+                numbers,
                 time: vertex.ray.time,
             };
             self.look_along(stage, &passage);
         }
-        match flight.fly(medium, &at, segment.length, vertex.numbers.connections) {
+        match flight.fly(medium, &at, segment.length, numbers.connections) {
             Arrival::Through(factor) => {
                 lane.beta *= factor;
                 None

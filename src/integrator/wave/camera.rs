@@ -9,14 +9,15 @@ use std::ops::Range;
 use super::Wave;
 use crate::accel::RayKind;
 use crate::camera::{CameraLanes, CameraSample};
-use crate::film::{FilterSample, PixelRect, TILE_SIZE};
-use crate::geometry::{LANES, Ray, RayCone};
-use crate::integrator::lane::{Batch, Lane, NO_SLOT, Slot};
+use crate::film::{FilterLanes, PixelRect, TILE_SIZE};
+use crate::geometry::{LANES, Ray, RayCone, RayPacket};
+use crate::integrator::lane::{Batch, Lane, LanePacket, NO_SLOT, Slot};
 use crate::integrator::numbers::{DETECTOR_GROUP, FILM_GROUP};
+use crate::integrator::queue::Packet;
 use crate::integrator::stage::{Estimator, Moment};
 use crate::material::TransportMode;
 use crate::math::{Lanes, Vec2, Vec2Lanes, VectorLanes, Vectorizer};
-use crate::sampling::SampleStream;
+use crate::sampling::StreamLanes;
 use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
 
@@ -60,65 +61,68 @@ impl<E: Estimator> Wave<'_, E> {
         let Pixels { wanted, traced, light } = *pixels;
         let pixels: [[u32; 2]; LANES] =
             std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
-        let streams = pixels.map(|[x, y]| {
-            let sampler = &self.view.sampler;
-            sampler.start(x.cast_signed(), y.cast_signed(), sample)
-        });
-        let film = SampleStream::draw4_lanes(self.vectorizer, &streams, FILM_GROUP);
-        let detector = SampleStream::draw4_lanes(self.vectorizer, &streams, DETECTOR_GROUP);
+        let sampler = &self.view.sampler;
+        let start = |[x, y]: [u32; 2]| sampler.start(x.cast_signed(), y.cast_signed(), sample);
+        let mut streams = StreamLanes::all(start(corner));
+        for (i, &pixel) in pixels.iter().enumerate() {
+            streams.set(i, start(pixel));
+        }
+        const { assert!(DETECTOR_GROUP == FILM_GROUP + 1) };
+        let [film, detector] = streams.draw::<0b1111, 0b0011>(self.vectorizer, FILM_GROUP);
         let starts = Starts::new(self.view, self.vectorizer, &pixels, &film);
         let shared_moment = self.estimator.moment();
+        let mut rays = RayPacket::EMPTY;
+        let mut lanes = LanePacket::all(Lane {
+            slot: NO_SLOT,
+            split: false,
+            stream: streams.get(0),
+            beta: SampledSpectrum::ONE,
+            eta_scale: 1.0,
+            cone: RayCone::default(),
+            state: self.estimator.camera_state(self.view, &Ray::INACTIVE),
+        });
+        lanes.streams = streams;
         for (i, &[x, y]) in pixels.iter().enumerate() {
-            let mut ray = Ray::INACTIVE;
-            let mut lane = Lane {
-                slot: NO_SLOT,
-                split: false,
-                stream: streams[i],
-                beta: SampledSpectrum::ONE,
-                eta_scale: 1.0,
-                cone: RayCone::default(),
-                state: self.estimator.camera_state(self.view, &ray),
-            };
             let is_traced = traced.contains(x, y);
             let is_wanted = wanted.contains(x, y) || (self.whole_tiles && is_traced);
             let has_slot = is_wanted || light.contains(x, y);
-            if is_traced || has_slot {
-                let moment = shared_moment.unwrap_or(Moment {
-                    wavelength: detector[0][i],
-                    time: detector[1][i],
-                });
-                let time = self.view.camera.scene_time(moment.time);
-                let start = starts.get(self.view, i, time);
-                let mut slot = Slot {
+            if !is_traced && !has_slot {
+                continue;
+            }
+            let moment = shared_moment.unwrap_or(Moment {
+                wavelength: detector[0][i],
+                time: detector[1][i],
+            });
+            let time = self.view.camera.scene_time(moment.time);
+            let start = starts.get(self.view, i, time);
+            let mut broken = false;
+            (lanes.cone_width[i], lanes.cone_spread[i]) = (start.cone.width, start.cone.spread);
+            // Else it is a light path only, or nothing comes through the lenses.
+            if is_traced && start.exists {
+                broken = !start.ray.is_valid();
+                if !broken {
+                    rays.set(i, &start.ray);
+                    lanes.states.set(i, self.estimator.camera_state(self.view, &start.ray));
+                    self.stats.camera_rays += 1;
+                }
+            }
+            if is_wanted {
+                lanes.slot[i] = self.slots.len() as u32;
+            }
+            if has_slot {
+                self.slots.push(Slot {
                     pixel: [x, y],
                     sample,
-                    filter_weight: starts.filters[i].weight,
+                    filter_weight: starts.filters.weight[i],
                     importance: start.importance,
                     time,
                     lambda: moment.wavelengths(self.scene.color()),
                     l: SampledSpectrum::ZERO,
-                    broken: false,
-                };
-                lane.cone = start.cone;
-                // Else it is a light path only, or nothing comes through the lenses.
-                if is_traced && start.exists {
-                    if start.ray.is_valid() {
-                        ray = start.ray;
-                        lane.state = self.estimator.camera_state(self.view, &ray);
-                        self.stats.camera_rays += 1;
-                    } else {
-                        slot.broken = true;
-                    }
-                }
-                if is_wanted {
-                    lane.slot = self.slots.len() as u32;
-                }
-                if has_slot {
-                    self.slots.push(slot);
-                }
+                    broken,
+                });
             }
-            batch.push(&lane, &ray);
         }
+        batch.paths.push_packet(&rays, &lanes);
     }
 }
 
@@ -160,7 +164,7 @@ struct Start {
 
 /// The camera rays of a block.
 struct Starts {
-    filters: [FilterSample; LANES],
+    filters: FilterLanes,
     film: Vec2Lanes,
     lens: Vec2Lanes,
     /// All of them, if the camera knows them together.
@@ -172,12 +176,11 @@ impl Starts {
     #[inline]
     fn new(view: &View, vectorizer: Vectorizer, pixels: &[[u32; 2]; LANES], numbers: &[Lanes; 4]) -> Self {
         let [film_x, film_y, lens_x, lens_y] = numbers;
-        let filters = std::array::from_fn(|i| view.filter.sample(Vec2::new(film_x[i], film_y[i])));
+        let filters = view.filter.sample_lanes(vectorizer, [film_x, film_y]);
         let (mut film, mut lens) = (Vec2Lanes::default(), Vec2Lanes::default());
         for (i, [x, y]) in pixels.iter().enumerate() {
             let center = Vec2::new(*x as f32 + 0.5, *y as f32 + 0.5);
-            let FilterSample { offset, .. } = filters[i];
-            film.set(i, center + offset);
+            film.set(i, center + filters.offset.get(i));
             lens.set(i, Vec2::new(lens_x[i], lens_y[i]));
         }
         Self {

@@ -1,7 +1,8 @@
 //! A wave: the paths of one tile, at one sample index or several, that go through each stage together.
 //!
 //! A *slot* is a pixel sample; it stays until its last shadow ray is back, then is turned into sensor values and retires. A *lane*
-//! is a live path, and names its slot. The lanes that go on after a stage make up the next batch. Where paths branch they are
+//! is a live path, and names its slot. Lanes lie in packets of eight, each beside the packet of their rays, and a stage goes from packet to packet.
+//! The lanes that go on after it are packed anew and make up the next *batch*. Where paths branch batches are
 //! several; the last one goes first, so that their number stays in proportion to the depth of paths. If the estimator has light
 //! paths, one for each slot, all of a wave go before its camera paths.
 //!
@@ -20,15 +21,16 @@ use self::first_hit::{FirstHits, surface_sample};
 use super::RenderStats;
 use super::lane::{Batch, NO_SLOT, Slot};
 use super::numbers::EventLanes;
+use super::queue::Packet;
 use super::schedule::TilePlace;
-use super::shadow::{Contribution, ShadowQueue, SplatContribution};
+use super::shadow::{ContributionLanes, ShadowQueue, SplatContribution, SplatLanes};
 use super::stage::{Estimator, PacketVertices, Stage, Vertex};
 use super::times::lap;
 use crate::accel::{RayKind, RayOrigin};
 use crate::film::{Film, Splat, TILE_SIZE};
-use crate::geometry::{HitPacket, LANES, SurfaceLanes};
+use crate::geometry::{HitPacket, LANES, RayPacket, SurfaceLanes};
 use crate::material::TransportMode;
-use crate::math::Vectorizer;
+use crate::math::{LaneSet, Vectorizer};
 use crate::scene::{Scene, View};
 
 /// Lanes of a batch, which a wave is filled up to with several sample indices where a tile is small.
@@ -52,8 +54,8 @@ pub(super) struct Wave<'s, E: Estimator> {
     hits: Vec<HitPacket>,
     surfaces: SurfaceLanes,
     first_hits: FirstHits,
-    shadows: ShadowQueue<Contribution>,
-    splats: ShadowQueue<SplatContribution>,
+    shadows: ShadowQueue<ContributionLanes>,
+    splats: ShadowQueue<SplatLanes>,
     /// What light paths have brought to the film.
     landed: Vec<SplatContribution>,
     splatted: Vec<Splat>,
@@ -136,6 +138,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             scene: self.scene,
             view: self.view,
             estimator: self.estimator,
+            vectorizer: self.vectorizer,
             mode,
             depth,
             slots: &mut self.slots,
@@ -155,7 +158,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
     /// Finds what the ray of each lane hits.
     fn trace(&mut self, batch: &Batch<E::State>) {
         let kind = batch.kind;
-        let rays = batch.rays.packets();
+        let rays = batch.paths.rays();
         if self.hits.len() < rays.len() {
             self.hits.resize(rays.len(), HitPacket::EMPTY);
         }
@@ -165,7 +168,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         });
         let mut start = Instant::now();
         self.scene.intersect(kind, rays, &mut self.hits[..rays.len()]);
-        let (stats, count) = (&mut self.stats, batch.lanes.len() as u64);
+        let (stats, count) = (&mut self.stats, batch.paths.len() as u64);
         let time = match (kind, batch.mode) {
             (RayKind::Bounce, TransportMode::Importance) => {
                 stats.photon_rays += count;
@@ -191,29 +194,26 @@ impl<'s, E: Estimator> Wave<'s, E> {
         let (view, space) = (self.view, self.gbuffer_space());
         let is_first = first_hits.are_wanted() && batch.depth == 0 && batch.mode == TransportMode::Radiance;
         let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
-        let packets = batch.rays.packets().iter().zip(&hits);
-        for ((rays, hits), mates) in packets.zip(batch.lanes.chunks(LANES)) {
+        for ((rays, lanes), hits) in batch.paths.packets().zip(&hits) {
             scene.interactions(&mut surfaces, rays, hits);
-            let streams = std::array::from_fn(|i| mates[i.min(mates.len() - 1)].stream);
-            let numbers = EventLanes::draw(vectorizer, &streams, batch.depth);
-            let mut is_done = [false; LANES];
+            let numbers = EventLanes::new(vectorizer, &lanes.streams, batch.depth);
+            let mut rest = active_lanes(rays, &lanes.slot);
             if !is_first {
                 let packet = PacketVertices {
-                    lanes: mates,
+                    active: rest,
+                    lanes,
                     rays,
                     hits,
                     surfaces: &surfaces,
                     numbers: &numbers,
                 };
-                is_done = estimator.shade_together(&mut stage, &packet);
-                stats.events_together += is_done.iter().map(|&is_done| u64::from(is_done)).sum::<u64>();
+                let together = estimator.shade_together(&mut stage, &packet);
+                stats.events_together += u64::from(together.and(hits.hit_lanes()).len());
+                rest = rest.without(together);
             }
-            for (i, lane) in mates.iter().enumerate() {
-                if is_done[i] || lane.slot == NO_SLOT || !rays.is_active(i) {
-                    continue;
-                }
+            for i in rest.lanes() {
+                let lane = &lanes.get(i);
                 let ray = &rays.get(i);
-                let numbers = &numbers.get(i);
                 let mut si;
                 let (mut surface, mut cone) = (None, lane.cone);
                 if let Some(hit) = hits.get(i) {
@@ -231,7 +231,8 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     ray,
                     surface,
                     cone,
-                    numbers,
+                    index: i,
+                    events: &numbers,
                 };
                 estimator.shade(&mut stage, vertex);
             }
@@ -243,4 +244,10 @@ impl<'s, E: Estimator> Wave<'s, E> {
         stats.times.shade -= stats.times.shadow - shadows_before;
         (self.hits, self.stats, self.surfaces, self.first_hits) = (hits, stats, surfaces, first_hits);
     }
+}
+
+/// The lanes that are paths with rays that were traced.
+#[inline]
+fn active_lanes(rays: &RayPacket, slots: &[u32; LANES]) -> LaneSet {
+    std::array::from_fn(|i| (rays.tnear[i] <= rays.tfar[i]) & (slots[i] != NO_SLOT)).into()
 }

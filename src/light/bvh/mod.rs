@@ -153,6 +153,15 @@ impl LightBvh {
         }
     }
 
+    /// See [`super::LightSampler::only`].
+    #[inline]
+    pub fn only(&self) -> Option<SampledLight> {
+        match self.root {
+            Next::Light(light) if self.infinite.is_empty() => Some(SampledLight { light, pmf: 1.0 }),
+            _ => None,
+        }
+    }
+
     /// See [`super::LightSampler::pmf`].
     #[inline]
     pub fn pmf(&self, p: Vec3, n: Vec3, light: LightId) -> f32 {

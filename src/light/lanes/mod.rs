@@ -16,12 +16,30 @@ use spheres::Spheres;
 #[derive(Clone, Debug, Default)]
 pub struct LightLanes {
     vectorizer: Vectorizer,
-    /// The light that was put into the lane last, and whether it is a sphere.
-    held: [Option<(LightId, bool)>; LANES],
+    /// The light that was put into the lane last.
+    held: [Option<Held>; LANES],
+    /// The light that was asked for last in all lanes, and whether it is there, see [`Self::sample_one`].
+    one: Option<(LightId, bool)>,
+    plain: PlainLights,
+    samples: LightSampleLanes,
+}
+
+/// What [`PlainLight`]s are, one for each lane.
+#[derive(Clone, Debug, Default)]
+struct PlainLights {
     planes: Planes,
     spheres: Spheres,
     two_sided: [bool; LANES],
     radiance: SpectrumLanes,
+}
+
+/// A light in a lane.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    light: LightId,
+    is_sphere: bool,
+    /// Whether its radiance is the same at all wavelengths, and in its lane.
+    has_radiance: bool,
 }
 
 /// A light at rest that sends out the same radiance everywhere.
@@ -75,32 +93,29 @@ pub type ChosenLight<'a> = (LightId, &'a Light, &'a Wavelengths);
 impl LightLanes {
     /// Samples a direction from `p` at `time` in each lane towards its light; nothing in lanes without one.
     #[inline]
-    pub fn sample(
-        &mut self,
-        lights: &[Option<ChosenLight<'_>>; LANES],
-        p: &Vec3Lanes,
-        time: &Lanes,
-        u: [&Lanes; 2],
-    ) -> LightSampleLanes {
+    pub fn sample(&mut self, lights: &[Option<ChosenLight<'_>>; LANES], p: &Vec3Lanes, time: &Lanes, u: [&Lanes; 2]) {
         let (mut is_plane, mut is_sphere) = ([false; LANES], [false; LANES]);
         for (lane, chosen) in lights.iter().enumerate() {
             let Some((id, light, lambda)) = *chosen else { continue };
-            let Some(sphere) = self.hold(lane, id, light) else {
+            let Some(held) = self.hold(lane, id, light) else {
                 continue;
             };
-            (is_plane[lane], is_sphere[lane]) = (!sphere, sphere);
-            self.radiance.set(lane, light.plain_radiance(lambda));
+            (is_plane[lane], is_sphere[lane]) = (!held.is_sphere, held.is_sphere);
+            if !held.has_radiance {
+                self.plain.radiance.set(lane, light.plain_radiance(lambda));
+            }
         }
         if is_sphere != [false; LANES] {
-            is_sphere = self.spheres.fit(is_sphere, p);
+            is_sphere = self.plain.spheres.fit(is_sphere, p);
         }
-        let mut samples = self.vectorizer.run(Compute {
-            lights: &*self,
+        self.vectorizer.run(Compute {
+            lights: &self.plain,
             has_planes: is_plane != [false; LANES],
             is_sphere,
-            turns: self.spheres.turns(is_sphere, u[1]),
+            turns: self.plain.spheres.turns(is_sphere, u[1]),
             p,
             u,
+            samples: &mut self.samples,
         });
         for (lane, chosen) in lights.iter().enumerate() {
             if is_plane[lane] || is_sphere[lane] {
@@ -109,28 +124,76 @@ impl LightLanes {
             let sample = chosen.and_then(|(_, light, lambda)| {
                 light.sample_li(p.get(lane), time[lane], Vec2::new(u[0][lane], u[1][lane]), lambda)
             });
-            samples.set(lane, sample.as_ref());
+            self.samples.set(lane, sample.as_ref());
         }
-        samples
     }
 
-    /// Puts a light into a lane, unless it is there, and says whether it is a sphere; `None` if it is not plain.
+    /// [`Self::sample`] of the same light in all lanes, without a look at each; false if it is not a plane whose radiance is the same at
+    /// all wavelengths.
     #[inline]
-    fn hold(&mut self, lane: usize, id: LightId, light: &Light) -> Option<bool> {
-        if let Some((held, is_sphere)) = self.held[lane]
-            && held == id
-        {
-            return Some(is_sphere);
+    pub fn sample_one(&mut self, id: LightId, light: &Light, p: &Vec3Lanes, u: [&Lanes; 2]) -> bool {
+        let is_held = match self.one {
+            Some((one, is_held)) if one == id => is_held,
+            _ => self.hold_everywhere(id, light),
+        };
+        if !is_held {
+            return false;
         }
+        self.vectorizer.run(Compute {
+            lights: &self.plain,
+            has_planes: true,
+            is_sphere: [false; LANES],
+            turns: [[0.0; LANES]; 2],
+            p,
+            u,
+            samples: &mut self.samples,
+        });
+        true
+    }
+
+    /// What was sampled last.
+    #[inline]
+    pub fn samples(&self) -> &LightSampleLanes {
+        &self.samples
+    }
+
+    /// Puts a plane whose radiance is known into all lanes; false if it is none.
+    #[inline(never)]
+    fn hold_everywhere(&mut self, id: LightId, light: &Light) -> bool {
+        let is_held = (0..LANES).all(|lane| {
+            let held = self.hold(lane, id, light);
+            held.is_some_and(|held| !held.is_sphere && held.has_radiance)
+        });
+        self.one = Some((id, is_held));
+        is_held
+    }
+
+    /// Puts a light into a lane, unless it is there; `None` if it is not plain.
+    #[inline]
+    fn hold(&mut self, lane: usize, id: LightId, light: &Light) -> Option<Held> {
+        if let Some(held) = self.held[lane]
+            && held.light == id
+        {
+            return Some(held);
+        }
+        let radiance = light.known_radiance();
         let light = light.plain()?;
         match &light.shape {
-            PlainShape::Plane(plane) => self.planes.set(lane, plane),
-            PlainShape::Sphere(sphere) => self.spheres.set(lane, sphere),
+            PlainShape::Plane(plane) => self.plain.planes.set(lane, plane),
+            PlainShape::Sphere(sphere) => self.plain.spheres.set(lane, sphere),
         }
-        self.two_sided[lane] = light.two_sided;
-        let is_sphere = matches!(light.shape, PlainShape::Sphere(_));
-        self.held[lane] = Some((id, is_sphere));
-        Some(is_sphere)
+        self.plain.two_sided[lane] = light.two_sided;
+        // What was everywhere is so no more.
+        self.one = self.one.filter(|(_, is_held)| !is_held);
+        if let Some(radiance) = radiance {
+            self.plain.radiance.set(lane, radiance);
+        }
+        self.held[lane] = Some(Held {
+            light: id,
+            is_sphere: matches!(light.shape, PlainShape::Sphere(_)),
+            has_radiance: radiance.is_some(),
+        });
+        self.held[lane]
     }
 }
 
@@ -159,20 +222,22 @@ impl LightSampleLanes {
 
 /// See [`LightLanes::sample`].
 struct Compute<'a> {
-    lights: &'a LightLanes,
+    lights: &'a PlainLights,
     has_planes: bool,
     is_sphere: [bool; LANES],
     /// See [`Spheres::turns`].
     turns: [Lanes; 2],
     p: &'a Vec3Lanes,
     u: [&'a Lanes; 2],
+    /// Written at the end, all at once: the compiler cannot know that they are apart from the others.
+    samples: &'a mut LightSampleLanes,
 }
 
 impl Kernel for Compute<'_> {
-    type Output = LightSampleLanes;
+    type Output = ();
 
     #[inline(always)]
-    fn call(self) -> LightSampleLanes {
+    fn call(self) {
         let mut points = Points::default();
         if self.has_planes {
             points = self.lights.planes.points(self.p, self.u);
@@ -201,7 +266,7 @@ impl Kernel for Compute<'_> {
             samples.error[i] = points.error[i];
             samples.ng.set(i, ng);
         }
-        samples
+        *self.samples = samples;
     }
 }
 
