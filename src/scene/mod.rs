@@ -17,13 +17,13 @@ mod view;
 use std::sync::Arc;
 
 use crate::accel::{Accel, Backend, BuildOptions};
-use crate::geometry::{GeometryId, Hit, PrimitiveId, SurfaceInteraction, World};
+use crate::geometry::{GeometryId, PrimitiveId, SurfaceInteraction, World};
 use crate::light::{EnvironmentLight, Light, LightId, LightSampler};
 use crate::material::Material;
 use crate::math::{Bounds3, Vec3};
 use crate::medium::{HomogeneousMedium, MediumId};
 use crate::spectrum::ColorMode;
-use crate::texture::{FloatTexture, SpectrumTexture};
+use crate::texture::FloatTexture;
 
 use media::MediumInterface;
 pub use view::{View, ViewOverrides};
@@ -119,17 +119,6 @@ impl Scene {
     #[inline]
     pub fn material(&self, geometry: GeometryId) -> &Material {
         &self.materials[self.surfaces[geometry.index()].material as usize]
-    }
-
-    /// The reflectance of what was hit, if it is Lambertian and nothing else there: no light.
-    #[inline]
-    pub fn lambertian(&self, hit: Hit) -> Option<&SpectrumTexture> {
-        let surface = &self.surfaces[hit.geometry.index()];
-        let emits = surface.lights.get(hit.primitive.index()).is_some_and(Option::is_some);
-        if emits {
-            return None;
-        }
-        self.materials[surface.material as usize].lambertian()
     }
 
     /// All materials.

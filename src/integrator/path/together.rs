@@ -1,22 +1,26 @@
-//! The commonest scattering event, of eight paths at once: by Lambertian surfaces that do not emit.
+//! The commonest scattering events, of eight paths at once: by Lambertian surfaces and by conductors.
 //! The bits are those of [`PathIntegrator::scatter`], which takes the other paths.
 
-use std::f32::consts::FRAC_1_PI;
+mod lobes;
+
+use std::marker::PhantomData;
 
 use super::{PathIntegrator, PathStage, survival};
 use crate::desc::{Heuristic, Strategy};
-use crate::geometry::{Ray, RayPacket, Surfaces};
-use crate::integrator::direct::Origin;
+use crate::geometry::{Hit, Ray, RayPacket, Surfaces};
+use crate::integrator::direct::{DirectLight, Origin};
 use crate::integrator::fault::Fault;
 use crate::integrator::lane::{Lane, NO_SLOT, Slot};
 use crate::integrator::numbers::EventLanes;
 use crate::integrator::shadow::{Contribution, NO_NOTE};
 use crate::integrator::stage::PacketVertices;
 use crate::light::{ChosenLight, LightLanes, LightSampleLanes};
+use crate::material::{LaneSample, LaneValue};
 use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, Vectorizer, offset_ray_origin};
-use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic, warp};
+use crate::sampling::{SolidAnglePdf, balance_heuristic, power_heuristic};
 use crate::scene::Scene;
-use crate::spectrum::{SampledSpectrum, SpectrumLanes};
+use crate::spectrum::SpectrumLanes;
+use lobes::{Kind, KindLanes, Lambertian, Lobes, Mirror, RoughConductor};
 
 /// What eight paths are computed with. Made once and used again and again.
 #[derive(Debug, Default)]
@@ -29,7 +33,7 @@ pub(in crate::integrator) struct Together {
 /// The paths, at the surfaces that they have come to.
 #[derive(Debug, Default)]
 struct Paths {
-    albedo: SpectrumLanes,
+    kinds: KindLanes,
     beta: SpectrumLanes,
     eta_scale: Lanes,
     /// Of the light that each samples; 1 without.
@@ -52,7 +56,9 @@ struct Scattered {
     origin: Vec3Lanes,
     direction: Vec3Lanes,
     beta: SpectrumLanes,
-    /// Of the direction, by solid angle.
+    /// Whether by delta lobes.
+    is_delta: bool,
+    /// Of the direction, by solid angle, if not.
     pdf: Lanes,
 }
 
@@ -66,73 +72,114 @@ impl PathIntegrator {
     ) -> [bool; LANES] {
         // Of a path that has been split the order of what it brings would depend on the packets that its parts are in.
         let is_usual = self.strategy == Strategy::Mis && self.splitting == 1 && self.fault == Fault::None;
-        if !is_usual || self.max_depth == Some(stage.depth) {
+        if !is_usual {
             return [false; LANES];
         }
-        let Together {
-            vectorizer,
-            lights,
-            paths,
-        } = &mut *stage.memory;
-        let (taken, chosen) = paths.gather(stage.scene, stage.slots, packet);
-        if taken == [false; LANES] {
-            return taken;
+        if self.max_depth == Some(stage.depth) {
+            return at_dark_ends(stage.scene, packet);
+        }
+        let Together { lights, paths, .. } = &mut *stage.memory;
+        let (kinds, chosen) = paths.gather(&self.direct_light(), stage.scene, stage.slots, packet);
+        if kinds == [None; LANES] {
+            return [false; LANES];
         }
         let surfaces = packet.surfaces.all();
         let lights = &lights.sample(&chosen, &surfaces.p, &packet.rays.time, packet.numbers.light());
-        let scattered = vectorizer.run(Scatter {
+        let of = |kind| kinds.map(|of_lane| of_lane == Some(kind));
+        self.send::<Lambertian>(stage, packet, lights, of(Kind::Lambertian));
+        self.send::<RoughConductor<false>>(stage, packet, lights, of(Kind::Ggx));
+        self.send::<RoughConductor<true>>(stage, packet, lights, of(Kind::Beckmann));
+        self.send::<Mirror>(stage, packet, lights, of(Kind::Mirror));
+        kinds.map(|kind| kind.is_some())
+    }
+
+    /// Sends the chosen lanes, which are at surfaces with such lobes, on their ways.
+    #[inline]
+    fn send<L: Lobes>(
+        &self,
+        stage: &mut PathStage<'_, '_>,
+        packet: &PacketVertices<'_, Origin>,
+        lights: &LightSampleLanes,
+        chosen: [bool; LANES],
+    ) {
+        if chosen == [false; LANES] {
+            return;
+        }
+        let Together { vectorizer, paths, .. } = &*stage.memory;
+        let scattered = vectorizer.run(Scatter::<L> {
             rays: packet.rays,
-            surfaces,
+            surfaces: packet.surfaces.all(),
             numbers: packet.numbers,
             paths,
             lights,
             is_power: self.heuristic == Heuristic::Power,
             depth: stage.depth,
             is_unlimited: self.max_depth.is_none(),
+            lobes: PhantomData,
         });
         for (i, lane) in packet.lanes.iter().enumerate() {
-            if taken[i] {
+            if chosen[i] {
                 scattered.send(stage, packet, i, lane);
             }
         }
-        taken
     }
 }
 
+/// Which paths have nothing more to bring after their last scattering event, as nothing emits where they are.
+fn at_dark_ends(scene: &Scene, packet: &PacketVertices<'_, Origin>) -> [bool; LANES] {
+    let mut ends = [false; LANES];
+    for (i, lane) in packet.lanes.iter().enumerate() {
+        let is_dark = |hit: Hit| scene.light_of(hit.geometry, hit.primitive).is_none();
+        ends[i] = lane.slot != NO_SLOT && packet.hits.get(i).is_some_and(is_dark);
+    }
+    ends
+}
+
 impl Paths {
-    /// Takes up the paths of `packet` that are at Lambertian surfaces; says which those are, and the light that each is to sample.
+    /// Takes up the paths of `packet` that are at surfaces of some kind, and adds what these emit; says which kind, and the light that
+    /// each is to sample.
     #[inline]
     fn gather<'a>(
         &mut self,
+        direct_light: &DirectLight,
         scene: &'a Scene,
-        slots: &'a [Slot],
+        slots: &'a mut [Slot],
         packet: &PacketVertices<'_, Origin>,
-    ) -> ([bool; LANES], [Option<ChosenLight<'a>>; LANES]) {
-        let surfaces = packet.surfaces.all();
-        let (mut taken, mut chosen) = ([false; LANES], [None; LANES]);
+    ) -> ([Option<Kind>; LANES], [Option<ChosenLight<'a>>; LANES]) {
+        let (mut kinds, mut chosen) = ([None; LANES], [None; LANES]);
         for (i, lane) in packet.lanes.iter().enumerate() {
             if lane.slot == NO_SLOT || !packet.rays.is_active(i) {
                 continue;
             }
             let Some(hit) = packet.hits.get(i) else { continue };
-            let Some(reflectance) = scene.lambertian(hit) else {
+            let slot = &mut slots[lane.slot as usize];
+            let surface = || packet.surface(i, hit);
+            kinds[i] = self.kinds.set(i, scene.material(hit.geometry), surface, &slot.lambda);
+            if kinds[i].is_none() {
                 continue;
-            };
-            let lambda = &slots[lane.slot as usize].lambda;
-            let albedo = match reflectance.constant() {
-                Some(spectrum) => spectrum.sample(lambda),
-                None => reflectance.reflectance_at(&packet.surface(i, hit), lambda),
-            };
-            taken[i] = true;
-            self.albedo.set(i, albedo);
+            }
             self.beta.set(i, lane.beta);
             self.eta_scale[i] = lane.eta_scale;
+            if scene.light_of(hit.geometry, hit.primitive).is_some()
+                && let Some(le) = direct_light.emission(scene, &lane.state, &surface(), &slot.lambda)
+            {
+                slot.l += lane.beta * le;
+            }
+        }
+        let (slots, surfaces): (&'a [Slot], _) = (slots, packet.surfaces.all());
+        for (i, lane) in packet.lanes.iter().enumerate() {
+            if kinds[i].is_none_or(Kind::is_delta) {
+                continue;
+            }
             let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
             let light = scene.light_sampler().sample(p, n, packet.numbers.which_light()[i]);
             self.pmf[i] = light.map_or(1.0, |light| light.pmf);
-            chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
+            chosen[i] = light.map(|light| {
+                let lambda = &slots[lane.slot as usize].lambda;
+                (light.light, scene.light(light.light), lambda)
+            });
         }
-        (taken, chosen)
+        (kinds, chosen)
     }
 }
 
@@ -157,10 +204,14 @@ impl Scattered {
         let next = Lane {
             beta: self.beta.get(i),
             cone: packet.cone(i),
-            state: Origin::Sampled {
-                p: surfaces.p.get(i),
-                n: surfaces.ns.get(i),
-                pdf: SolidAnglePdf(self.pdf[i]),
+            state: if self.is_delta {
+                Origin::Delta
+            } else {
+                Origin::Sampled {
+                    p: surfaces.p.get(i),
+                    n: surfaces.ns.get(i),
+                    pdf: SolidAnglePdf(self.pdf[i]),
+                }
             },
             ..*lane
         };
@@ -169,8 +220,8 @@ impl Scattered {
     }
 }
 
-/// See [`PathIntegrator::scatter_together`].
-struct Scatter<'a> {
+/// See [`PathIntegrator::send`].
+struct Scatter<'a, L> {
     rays: &'a RayPacket,
     surfaces: &'a Surfaces,
     numbers: &'a EventLanes,
@@ -179,45 +230,87 @@ struct Scatter<'a> {
     is_power: bool,
     depth: u32,
     is_unlimited: bool,
+    lobes: PhantomData<L>,
 }
 
-impl Kernel for Scatter<'_> {
+impl<L: Lobes> Kernel for Scatter<'_, L> {
     type Output = Scattered;
 
     #[inline(always)]
     fn call(self) -> Scattered {
-        let mut scattered = Scattered::default();
+        let mut scattered = Scattered {
+            is_delta: L::IS_DELTA,
+            ..Scattered::default()
+        };
+        let places = Places::of(&self);
+        if !L::IS_DELTA {
+            for i in 0..LANES {
+                self.connect(&mut scattered, i, &places);
+            }
+        }
         for i in 0..LANES {
-            let n = self.surfaces.ns.get(i);
-            let wo = -self.rays.direction(i);
-            let cos_o = wo.dot(n);
-            let f = self.paths.albedo.get(i) * FRAC_1_PI;
-            self.connect(&mut scattered, i, cos_o, f);
-            self.go_on(&mut scattered, i, cos_o, f);
+            self.go_on(&mut scattered, i, &places);
         }
         scattered
     }
 }
 
-impl Scatter<'_> {
+/// The frames of lobes, and the directions in them that paths came from.
+struct Places {
+    s: Vec3Lanes,
+    t: Vec3Lanes,
+    n: Vec3Lanes,
+    wo: Vec3Lanes,
+}
+
+impl Places {
+    #[inline(always)]
+    fn of<L: Lobes>(scatter: &Scatter<'_, L>) -> Self {
+        let n = scatter.surfaces.ns;
+        let (mut s, mut t, mut wo) = (Vec3Lanes::default(), Vec3Lanes::default(), Vec3Lanes::default());
+        for i in 0..LANES {
+            let frame = L::frame(&scatter.paths.kinds, i, n.get(i));
+            s.set(i, frame.s);
+            t.set(i, frame.t);
+            wo.set(i, frame.to_local(-scatter.rays.direction(i)));
+        }
+        Self { s, t, n, wo }
+    }
+
+    #[inline(always)]
+    fn frame(&self, lane: usize) -> Frame {
+        Frame {
+            s: self.s.get(lane),
+            t: self.t.get(lane),
+            n: self.n.get(lane),
+        }
+    }
+}
+
+impl<L: Lobes> Scatter<'_, L> {
     /// What the light that a lane has found brings by way of the surface, and the ray there.
     #[inline(always)]
-    fn connect(&self, scattered: &mut Scattered, i: usize, cos_o: f32, f: SampledSpectrum) {
-        let (surfaces, lights, pmf) = (self.surfaces, self.lights, self.paths.pmf[i]);
+    fn connect(&self, scattered: &mut Scattered, i: usize, places: &Places) {
+        let Self {
+            surfaces,
+            lights,
+            paths,
+            ..
+        } = self;
+        let (pdf, pmf) = (lights.pdf[i], paths.pmf[i]);
         let wi = lights.wi.get(i);
-        let cos_i = wi.dot(surfaces.ns.get(i));
-        let pdf = lights.pdf[i];
-        scattered.connects[i] = (pdf > 0.0) & (cos_o * cos_i > 0.0) & !f.is_black();
-        let cos = cos_i.abs();
-        let (pdf_light, pdf_scatter) = (pmf * pdf, cos * FRAC_1_PI);
+        let (wo, wi_local) = (places.wo.get(i), places.frame(i).to_local(wi));
+        let LaneValue { value: bsdf, exists } = L::eval(&paths.kinds, i, wo, wi_local);
+        scattered.connects[i] = (pdf > 0.0) & exists & !bsdf.f.is_black();
+        let pdf_light = pmf * pdf;
         let weight = if self.is_power {
-            power_heuristic(pdf_light, pdf_scatter)
+            power_heuristic(pdf_light, bsdf.pdf)
         } else {
-            balance_heuristic(pdf_light, pdf_scatter)
+            balance_heuristic(pdf_light, bsdf.pdf)
         };
         let weight = if lights.is_delta[i] { 1.0 } else { weight };
-        let value = f * cos * lights.li.get(i) * (1.0 / pmf / pdf);
-        scattered.value.set(i, self.paths.beta.get(i) * (value * weight));
+        let value = bsdf.f * wi_local.z.abs() * lights.li.get(i) * (1.0 / pmf / pdf);
+        scattered.value.set(i, paths.beta.get(i) * (value * weight));
 
         let (p, error, ng) = (surfaces.p.get(i), surfaces.error[i], surfaces.ng.get(i));
         let (to, time) = (lights.p.get(i), self.rays.time[i]);
@@ -238,22 +331,34 @@ impl Scatter<'_> {
 
     /// The direction that a path goes on in, and whether it survives.
     #[inline(always)]
-    fn go_on(&self, scattered: &mut Scattered, i: usize, cos_o: f32, f: SampledSpectrum) {
-        let surfaces = self.surfaces;
-        let [u, v] = self.numbers.bsdf();
-        let mut local = warp::sample_cosine_hemisphere(Vec2::new(u[i], v[i]));
-        local.z = if cos_o < 0.0 { -local.z } else { local.z };
-        let cos = local.z.abs();
-        let pdf = cos * FRAC_1_PI;
-        let beta = self.paths.beta.get(i) * (f * (cos / pdf));
-        let direction = Frame::from_normal(surfaces.ns.get(i)).to_world(local).normalize();
-        let throughput = beta.max_value() * self.paths.eta_scale[i];
+    fn go_on(&self, scattered: &mut Scattered, i: usize, places: &Places) {
+        let Self {
+            surfaces,
+            paths,
+            numbers,
+            ..
+        } = self;
+        let [u, v] = numbers.bsdf();
+        let wo = places.wo.get(i);
+        let LaneSample {
+            wi,
+            value: bsdf,
+            exists,
+        } = L::sample(&paths.kinds, i, wo, Vec2::new(u[i], v[i]));
+        let weight = if L::IS_DELTA {
+            bsdf.f
+        } else {
+            bsdf.f * (wi.z.abs() / bsdf.pdf)
+        };
+        let beta = paths.beta.get(i) * weight;
+        let direction = places.frame(i).to_world(wi).normalize();
+        let throughput = beta.max_value() * paths.eta_scale[i];
         let survival = survival(self.depth, throughput, self.is_unlimited);
-        let survives = (survival >= 1.0) | (self.numbers.roulette()[i] < survival);
+        let survives = (survival >= 1.0) | (numbers.roulette()[i] < survival);
         let thinned = if survival < 1.0 { 1.0 / survival } else { 1.0 };
-        scattered.goes_on[i] = (cos_o != 0.0) & (local.z != 0.0) & !f.is_black() & survives;
+        scattered.goes_on[i] = exists & (wo.z != 0.0) & (wi.z != 0.0) & !bsdf.f.is_black() & survives;
         scattered.beta.set(i, beta * thinned);
-        scattered.pdf[i] = pdf;
+        scattered.pdf[i] = bsdf.pdf;
 
         let origin = offset_ray_origin(surfaces.p.get(i), surfaces.error[i], surfaces.ng.get(i), direction);
         scattered.next_is_valid[i] = Ray::new(origin, direction, self.rays.time[i]).is_valid();

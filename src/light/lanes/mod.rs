@@ -98,7 +98,6 @@ impl LightLanes {
             lights: &*self,
             has_planes: is_plane != [false; LANES],
             is_sphere,
-            turns: self.spheres.turns(is_sphere, u[1]),
             p,
             u,
         });
@@ -162,8 +161,6 @@ struct Compute<'a> {
     lights: &'a LightLanes,
     has_planes: bool,
     is_sphere: [bool; LANES],
-    /// See [`Spheres::turns`].
-    turns: [Lanes; 2],
     p: &'a Vec3Lanes,
     u: [&'a Lanes; 2],
 }
@@ -178,7 +175,7 @@ impl Kernel for Compute<'_> {
             points = self.lights.planes.points(self.p, self.u);
         }
         if self.is_sphere != [false; LANES] {
-            let on_spheres = self.lights.spheres.points(self.p, self.u[0], &self.turns);
+            let on_spheres = self.lights.spheres.points(self.p, self.u);
             points = on_spheres.or(self.is_sphere, &points);
         }
         let mut samples = LightSampleLanes::default();
