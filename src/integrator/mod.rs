@@ -356,7 +356,7 @@ pub struct RenderStats {
     pub photon_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
-    /// Scattering events that were taken together, by packets.
+    /// Scattering events, and ends of paths, that were taken together, by packets.
     pub events_together: u64,
     /// The samples of each pixel that were rendered, if fewer than were planned.
     pub stopped_after: Option<u32>,

@@ -110,12 +110,12 @@ impl<'a> EventLanes<'a> {
             .get_or_init(|| self.streams.draw::<0b1111, 0b1111>(self.vectorizer, self.group))
     }
 
-    /// Those of Lambertian surfaces, which have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
+    /// Those of surfaces that have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
     /// `has_others` says whether other surfaces are likely to ask for all of them.
     #[inline(always)]
-    pub fn lambertian(&self, chooses_light: bool, may_end: bool, has_others: bool) -> LambertianLanes {
+    pub fn of_one_lobe(&self, chooses_light: bool, may_end: bool, has_others: bool) -> OneLobeLanes {
         if has_others {
-            return LambertianLanes(*self.all());
+            return OneLobeLanes(*self.all());
         }
         let Self {
             vectorizer,
@@ -123,7 +123,7 @@ impl<'a> EventLanes<'a> {
             group,
             ..
         } = *self;
-        LambertianLanes(match (chooses_light, may_end) {
+        OneLobeLanes(match (chooses_light, may_end) {
             (false, false) => streams.draw::<0b0011, 0b0011>(vectorizer, group),
             (false, true) => streams.draw::<0b1011, 0b0011>(vectorizer, group),
             (true, _) => streams.draw::<0b1111, 0b0011>(vectorizer, group),
@@ -131,10 +131,10 @@ impl<'a> EventLanes<'a> {
     }
 }
 
-/// What Lambertian surfaces need of [`EventNumbers`], of eight paths.
-pub(super) struct LambertianLanes([[Lanes; 4]; 2]);
+/// What surfaces with one lobe need of [`EventNumbers`], of eight paths.
+pub(super) struct OneLobeLanes([[Lanes; 4]; 2]);
 
-impl LambertianLanes {
+impl OneLobeLanes {
     /// The two for points of lights.
     #[inline(always)]
     pub fn light(&self) -> [&Lanes; 2] {

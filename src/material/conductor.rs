@@ -2,6 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
+use super::lobe::{LaneSample, LaneValue};
 use super::multiscatter::{RoughSurface, Substance, multiple_share};
 use super::{Density, LocalSample, LocalValue, Microfacets, fresnel_complex};
 use crate::math::{Vec2, Vec3};
@@ -43,23 +44,40 @@ impl Conductor {
         self.roughness.is_none()
     }
 
+    /// Its facets; `None` if it is smooth.
+    pub(super) fn facets(&self) -> Option<&Microfacets> {
+        self.roughness.as_ref()
+    }
+
+    /// Its index, eta and k.
+    pub(super) fn index(&self) -> (SampledSpectrum, SampledSpectrum) {
+        (self.eta, self.k)
+    }
+
     /// Whether its values are estimates.
     pub fn is_estimate(&self) -> bool {
         self.multiple && self.roughness.is_some()
     }
 
     /// The reflectance of a facet.
+    #[inline(always)]
     pub(super) fn fresnel(&self, cos: f32) -> SampledSpectrum {
-        SampledSpectrum(std::array::from_fn(|i| {
-            fresnel_complex(cos, self.eta.0[i], self.k.0[i])
-        }))
+        let ([eta_a, eta_b, eta_c, eta_d], [k_a, k_b, k_c, k_d]) = (self.eta.0, self.k.0);
+        SampledSpectrum([
+            fresnel_complex(cos, eta_a, k_a),
+            fresnel_complex(cos, eta_b, k_b),
+            fresnel_complex(cos, eta_c, k_c),
+            fresnel_complex(cos, eta_d, k_d),
+        ])
     }
 
     /// See [`Bsdf::eval`](super::Bsdf::eval): F D G / (4 cos cos) (Torrance and Sparrow 1967).
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Option<LocalValue> {
         let facets = self.roughness.as_ref()?;
-        let m = half_vector(wo, wi)?;
-        let single = self.eval_facet(facets, wo, wi, m);
+        let LaneValue { value: single, exists } = self.eval_once(facets, wo, wi);
+        if !exists {
+            return None;
+        }
         Some(if self.multiple {
             LocalValue {
                 f: single.f + self.surface(facets).estimate(wo, wi) * (1.0 / wi.z.abs()),
@@ -84,6 +102,35 @@ impl Conductor {
         LocalSample::weighted(weight, pdf, wi, 1.0)
     }
 
+    /// What light brings that is reflected once.
+    #[inline(always)]
+    pub(super) fn eval_once(&self, facets: &Microfacets, wo: Vec3, wi: Vec3) -> LaneValue {
+        let (m, exists) = half_vector_if(wo, wi);
+        LaneValue {
+            value: self.eval_facet(facets, wo, wi, m),
+            exists,
+        }
+    }
+
+    /// A direction that light is reflected in once.
+    #[inline(always)]
+    pub(super) fn sample_once(&self, facets: &Microfacets, wo: Vec3, u: Vec2) -> LaneSample {
+        let m = facets.visible_normal(wo, u);
+        let wi = reflect(wo, m);
+        LaneSample {
+            wi,
+            value: self.eval_facet(facets, wo, wi, m),
+            exists: wo.z * wi.z > 0.0,
+        }
+    }
+
+    /// The direction that a smooth one reflects `wo` in, and how much of it.
+    #[inline(always)]
+    pub(super) fn mirror(&self, wo: Vec3) -> (Vec3, SampledSpectrum) {
+        (Vec3::new(-wo.x, -wo.y, wo.z), self.fresnel(wo.z.abs()))
+    }
+
+    #[inline(always)]
     fn eval_facet(&self, facets: &Microfacets, wo: Vec3, wi: Vec3, m: Vec3) -> LocalValue {
         LocalValue {
             f: self.fresnel(wo.dot(m).abs()) * (facets.d(m) * facets.g(wo, wi) / (4.0 * wo.z * wi.z).abs()),
@@ -94,9 +141,10 @@ impl Conductor {
     /// See [`Bsdf::sample_f`](super::Bsdf::sample_f).
     pub fn sample_f(&self, wo: Vec3, u: Vec2) -> Option<LocalSample> {
         let Some(facets) = &self.roughness else {
+            let (wi, value) = self.mirror(wo);
             return Some(LocalSample {
-                value: self.fresnel(wo.z.abs()),
-                wi: Vec3::new(-wo.x, -wo.y, wo.z),
+                value,
+                wi,
                 density: Density::Delta(1.0),
                 eta: 1.0,
             });
@@ -104,8 +152,8 @@ impl Conductor {
         if self.multiple {
             return self.sample_walk(facets, wo, u);
         }
-        let (m, wi) = sample_reflection(facets, wo, u)?;
-        Some(LocalSample::continuous(self.eval_facet(facets, wo, wi, m), wi, 1.0))
+        let LaneSample { wi, value, exists } = self.sample_once(facets, wo, u);
+        exists.then(|| LocalSample::continuous(value, wi, 1.0))
     }
 }
 
@@ -118,15 +166,20 @@ fn density_of_all(facets: &Microfacets, single: f32, wi: Vec3) -> f32 {
 /// The microfacet normal, with z >= 0, that reflects `wo` to `wi`; `None` if they are on different sides.
 #[inline]
 pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
-    if wo.z * wi.z <= 0.0 {
-        return None;
-    }
-    let m = (wo + wi).try_normalize()?;
-    Some(if m.z < 0.0 { -m } else { m })
+    let (m, exists) = half_vector_if(wo, wi);
+    exists.then_some(m)
+}
+
+/// [`half_vector`] for kernels, and whether there is one.
+#[inline(always)]
+fn half_vector_if(wo: Vec3, wi: Vec3) -> (Vec3, bool) {
+    let m = (wo + wi).normalize_or(Vec3::ZERO);
+    let exists = (wo.z * wi.z > 0.0) & ((m.x != 0.0) | (m.y != 0.0) | (m.z != 0.0));
+    (m * if m.z < 0.0 { -1.0 } else { 1.0 }, exists)
 }
 
 /// Density of the direction reflected by a visible normal `m`: the reflection doubles angles.
-#[inline]
+#[inline(always)]
 pub(super) fn reflection_pdf(facets: &Microfacets, wo: Vec3, m: Vec3) -> f32 {
     facets.visible_normal_pdf(wo, m) / (4.0 * wo.dot(m).abs())
 }
@@ -140,7 +193,7 @@ pub(super) fn sample_reflection(facets: &Microfacets, wo: Vec3, u: Vec2) -> Opti
 }
 
 /// Mirror direction of `wo` about `m`.
-#[inline]
+#[inline(always)]
 pub(super) fn reflect(wo: Vec3, m: Vec3) -> Vec3 {
     m * (2.0 * wo.dot(m)) - wo
 }

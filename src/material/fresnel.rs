@@ -21,7 +21,7 @@ pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
 /// Fresnel reflectance of a conductor of index `eta` + i `k` relative to the outside; `cos_i` in [0, 1].
 ///
 /// The real form of the equations (Born and Wolf, section 14.2): a² + b² = |eta² - sin²|.
-#[inline]
+#[inline(always)]
 pub fn fresnel_complex(cos_i: f32, eta: f32, k: f32) -> f32 {
     let cos_i = cos_i.clamp(0.0, 1.0);
     let cos2 = cos_i * cos_i;
@@ -36,11 +36,8 @@ pub fn fresnel_complex(cos_i: f32, eta: f32, k: f32) -> f32 {
     let parallel_term = perpendicular_term * sin2;
     let both = parallel_sum + parallel_term;
     // Only an index of 0 (the fourth lane of rgb mode) seen head on has nothing here.
-    let parallel = if both > 0.0 {
-        perpendicular * (parallel_sum - parallel_term) / both
-    } else {
-        perpendicular
-    };
+    let parallel = perpendicular * (parallel_sum - parallel_term) / both;
+    let parallel = if both > 0.0 { parallel } else { perpendicular };
     0.5 * (perpendicular + parallel)
 }
 

@@ -61,6 +61,26 @@ impl LocalSample {
     }
 }
 
+/// What a kernel has for an `Option<LocalValue>`.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneValue {
+    /// Without meaning unless it exists.
+    pub value: LocalValue,
+    /// Whether it does.
+    pub exists: bool,
+}
+
+/// What a kernel has for an `Option<LocalSample>` of a reflection that is one of a continuum.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneSample {
+    /// The direction, local.
+    pub wi: Vec3,
+    /// Of the direction; without meaning unless it exists.
+    pub value: LocalValue,
+    /// Whether it does.
+    pub exists: bool,
+}
+
 /// The lobes there are.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each is its type")]

@@ -3,7 +3,8 @@
 use std::f32::consts::PI;
 
 use super::{SPECULAR_ALPHA, beckmann};
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, exp_minus};
+use crate::sampling::warp;
 
 /// The shapes of distributions there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -43,6 +44,29 @@ impl Microfacets {
             alpha_y: alpha_y.max(Self::LEAST_ALPHA),
             separable: false,
         })
+    }
+
+    /// With slopes that [`Self::new`] has given.
+    #[inline(always)]
+    pub(super) fn of(distribution: Distribution, [alpha_x, alpha_y]: [f32; 2], separable: bool) -> Self {
+        Self {
+            distribution,
+            alpha_x,
+            alpha_y,
+            separable,
+        }
+    }
+
+    /// How they are distributed.
+    #[inline]
+    pub fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
+    /// See [`Self::with_separable_masking`].
+    #[inline]
+    pub fn is_separable(&self) -> bool {
+        self.separable
     }
 
     /// These facets, masked and shadowed independently as in Mitsuba, or not: then by their heights, as in pbrt-v4.
@@ -90,7 +114,7 @@ impl Microfacets {
     }
 
     /// Density of microfacet area by solid angle of its normal `m`, which has z >= 0.
-    #[inline]
+    #[inline(always)]
     pub fn d(&self, m: Vec3) -> f32 {
         let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
         match self.distribution {
@@ -104,7 +128,7 @@ impl Microfacets {
                 let slope2 = (x * x + y * y) / z2;
                 // Also where a grazing normal makes the slope infinite.
                 if slope2 < 80.0 {
-                    (-slope2).exp() / (PI * self.alpha_x * self.alpha_y * z2 * z2)
+                    exp_minus(slope2) / (PI * self.alpha_x * self.alpha_y * z2 * z2)
                 } else {
                     0.0
                 }
@@ -113,43 +137,36 @@ impl Microfacets {
     }
 
     /// Smith's Lambda, of a direction that goes up or down. It is one formula: Lambda(-w) = -1 - Lambda(w).
-    #[inline]
+    #[inline(always)]
     pub(super) fn signed_lambda(&self, w: Vec3) -> f32 {
         let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
         let across2 = x * x + y * y;
         match self.distribution {
             Distribution::Ggx => {
-                if w.z == 0.0 {
-                    return f32::INFINITY;
-                }
-                0.5 * ((1.0 + across2 / (w.z * w.z)).sqrt().copysign(w.z) - 1.0)
+                let lambda = 0.5 * ((1.0 + across2 / (w.z * w.z)).sqrt().copysign(w.z) - 1.0);
+                if w.z == 0.0 { f32::INFINITY } else { lambda }
             }
-            Distribution::Beckmann => {
-                let a = w.z / across2.sqrt();
-                // 0 / 0 is a direction without extent; straight up and down are infinite.
-                if a == 0.0 { f32::INFINITY } else { beckmann::lambda(a) }
-            }
+            // Straight up and down are infinite.
+            Distribution::Beckmann => beckmann::lambda(w.z / across2.sqrt()),
         }
     }
 
     /// Smith's Lambda, the same for either side.
-    #[inline]
+    #[inline(always)]
     pub fn lambda(&self, w: Vec3) -> f32 {
         match self.distribution {
             Distribution::Ggx => {
                 let z2 = w.z * w.z;
-                if z2 == 0.0 {
-                    return f32::INFINITY;
-                }
                 let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
-                0.5 * ((1.0 + (x * x + y * y) / z2).sqrt() - 1.0)
+                let lambda = 0.5 * ((1.0 + (x * x + y * y) / z2).sqrt() - 1.0);
+                if z2 == 0.0 { f32::INFINITY } else { lambda }
             }
             Distribution::Beckmann => self.signed_lambda(Vec3::new(w.x, w.y, w.z.abs())),
         }
     }
 
     /// Fraction of microfacets not masked from `w`.
-    #[inline]
+    #[inline(always)]
     pub fn g1(&self, w: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(w))
     }
@@ -157,48 +174,70 @@ impl Microfacets {
     /// Fraction masked neither from `wo` nor from `wi`, with correlated heights or independently.
     #[inline(always)]
     pub fn g(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.separable {
-            return self.g1(wo) * self.g1(wi);
-        }
-        1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
+        let (lambda_o, lambda_i) = (self.lambda(wo), self.lambda(wi));
+        let separate = (1.0 / (1.0 + lambda_o)) * (1.0 / (1.0 + lambda_i));
+        let correlated = 1.0 / (1.0 + lambda_o + lambda_i);
+        if self.separable { separate } else { correlated }
     }
 
     /// Density of the normals visible from `w`, by solid angle (Heitz 2014, equation 16).
     #[inline(always)]
     pub fn visible_normal_pdf(&self, w: Vec3, m: Vec3) -> f32 {
-        if w.z == 0.0 {
-            return 0.0;
-        }
-        self.g1(w) / w.z.abs() * self.d(m) * w.dot(m).abs()
+        let pdf = self.g1(w) / w.z.abs() * self.d(m) * w.dot(m).abs();
+        if w.z == 0.0 { 0.0 } else { pdf }
     }
 
     /// Samples a normal visible from `w` (in its upper or lower hemisphere alike; the normal has z >= 0) with density
     /// [`Microfacets::visible_normal_pdf`].
     #[inline]
     pub fn sample_visible_normal(&self, w: Vec3, u: Vec2) -> Vec3 {
-        self.sample_normal_seen_from(if w.z < 0.0 { -w } else { w }, u)
+        self.visible_normal(w, u)
+    }
+
+    /// [`Microfacets::sample_visible_normal`] for kernels.
+    #[inline(always)]
+    pub(super) fn visible_normal(&self, w: Vec3, u: Vec2) -> Vec3 {
+        let wh = self.stretched(if w.z < 0.0 { -w } else { w });
+        self.unstretched(match self.distribution {
+            Distribution::Ggx => ggx_normal(wh, u),
+            Distribution::Beckmann => (-beckmann::sample_visible_slope(wh, u)).extend(1.0),
+        })
     }
 
     /// Samples a normal with z >= 0 that faces `w`, which may look at the facets from below their horizon; the density is
     /// proportional to D(m) (w . m).
-    #[inline]
     pub(super) fn sample_normal_seen_from(&self, w: Vec3, u: Vec2) -> Vec3 {
-        // To the configuration of roughness 1: where the surface of GGX is a hemisphere.
-        let wh = Vec3::new(self.alpha_x * w.x, self.alpha_y * w.y, w.z).normalize();
-        let m = match self.distribution {
-            Distribution::Ggx => {
-                // By spherical caps (Dupuy and Benyoub 2023): a point of the cap above -wh.z is where light from wh is reflected to.
-                let (sin_phi, cos_phi) = (2.0 * PI * u.x).sin_cos();
-                let z = (1.0 - u.y) * (1.0 + wh.z) - wh.z;
-                let r = (1.0 - z * z).max(0.0).sqrt();
-                Vec3::new(r * cos_phi, r * sin_phi, z) + wh
-            }
-            Distribution::Beckmann => (-beckmann::sample_visible_slope(wh, u)).extend(1.0),
-        };
-        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0))
-            .try_normalize()
-            .unwrap_or(Vec3::Z)
+        if w.z >= 0.0 {
+            return self.sample_visible_normal(w, u);
+        }
+        let wh = self.stretched(w);
+        self.unstretched(match self.distribution {
+            Distribution::Ggx => ggx_normal(wh, u),
+            Distribution::Beckmann => (-beckmann::sample_visible_slope_from_below(wh, u)).extend(1.0),
+        })
     }
+
+    /// A direction in the configuration of roughness 1: where the surface of GGX is a hemisphere.
+    #[inline(always)]
+    fn stretched(&self, w: Vec3) -> Vec3 {
+        Vec3::new(self.alpha_x * w.x, self.alpha_y * w.y, w.z).normalize()
+    }
+
+    /// The unit normal that is `m`, not normalised, in that configuration.
+    #[inline(always)]
+    fn unstretched(&self, m: Vec3) -> Vec3 {
+        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(0.0)).normalize_or(Vec3::Z)
+    }
+}
+
+/// A normal of GGX of roughness 1, not normalised, that `w` sees. By spherical caps (Dupuy and Benyoub 2023): a point of the cap above
+/// -w.z is where light from `w` is reflected to.
+#[inline(always)]
+fn ggx_normal(w: Vec3, u: Vec2) -> Vec3 {
+    let (sin_phi, cos_phi) = warp::sin_cos_of_turn(u.x);
+    let z = (1.0 - u.y) * (1.0 + w.z) - w.z;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    Vec3::new(r * cos_phi, r * sin_phi, z) + w
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     Body, Bsdf, Burley, Conductor, Dielectric, Diffuse, DiffuseTransmission, HairMaterial, Interlayer, Layered, Lobe,
     Measured, MeasuredTables, Microfacets, OrenNayar, PlasticMaterial, Principled, PrincipledParameters,
-    PrincipledTables, Relief, Roughness, ThinDielectric, TintedMaterial,
+    PrincipledTables, Relief, Roughness, ThinDielectric, TintedConductor, TintedMaterial,
 };
 use crate::geometry::SurfaceInteraction;
 use crate::math::Frame;
@@ -199,6 +199,31 @@ impl Material {
             } => Some(reflectance),
             _ => None,
         }
+    }
+
+    /// It at a surface point, if it is a conductor whose facets reflect once. `si` is asked for only if so.
+    #[inline]
+    pub fn conductor(&self, si: impl FnOnce() -> SurfaceInteraction, lambda: &Wavelengths) -> Option<TintedConductor> {
+        let (untinted, reflectance) = match self {
+            Self::Tinted(tinted) => (&tinted.material, Some(&tinted.reflectance)),
+            _ => (self, None),
+        };
+        let Self::Conductor {
+            ior,
+            roughness,
+            multiple_scattering: false,
+        } = untinted
+        else {
+            return None;
+        };
+        let si = &si();
+        let (eta, k) = ior.at(si, lambda);
+        Some(TintedConductor {
+            conductor: Conductor::new(eta, k, roughness.at(si)),
+            tint: reflectance.map_or(SampledSpectrum::ONE, |reflectance| {
+                reflectance.reflectance_at(si, lambda)
+            }),
+        })
     }
 
     /// Whether some point of it may have delta lobes: be a mirror or clear glass, alone or under or over something else.

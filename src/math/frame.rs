@@ -15,7 +15,7 @@ pub struct Frame {
 
 impl Frame {
     /// Some frame with normal `n` (unit length): Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-    #[inline]
+    #[inline(always)]
     pub fn from_normal(n: Vec3) -> Self {
         let sign = 1.0_f32.copysign(n.z);
         let a = -1.0 / (sign + n.z);
@@ -29,25 +29,37 @@ impl Frame {
 
     /// The frame with normal `n` (unit length) whose `s` is `tangent` made orthogonal to it; falls back to
     /// [`Frame::from_normal`] where the two are parallel or the tangent is zero.
+    #[inline(always)]
     pub fn from_normal_tangent(n: Vec3, tangent: Vec3) -> Self {
-        let Some(s) = (tangent - n * n.dot(tangent)).try_normalize() else {
-            return Self::from_normal(n);
-        };
+        let s = (tangent - n * n.dot(tangent)).normalize_or(Vec3::ZERO);
         // Once more: where the tangent is nearly parallel to the normal, the first difference is mostly rounding.
-        let Some(s) = (s - n * n.dot(s)).try_normalize() else {
-            return Self::from_normal(n);
+        let s = (s - n * n.dot(s)).normalize_or(Vec3::ZERO);
+        let t = n.cross(s);
+        let other = Self::from_normal(n);
+        let is_parallel = (s.x == 0.0) & (s.y == 0.0) & (s.z == 0.0);
+        let select = |other: Vec3, this: Vec3| {
+            let select = |other, this| if is_parallel { other } else { this };
+            Vec3::new(
+                select(other.x, this.x),
+                select(other.y, this.y),
+                select(other.z, this.z),
+            )
         };
-        Self { s, t: n.cross(s), n }
+        Self {
+            s: select(other.s, s),
+            t: select(other.t, t),
+            n,
+        }
     }
 
     /// World direction to local.
-    #[inline]
+    #[inline(always)]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
     }
 
     /// Local direction to world.
-    #[inline]
+    #[inline(always)]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.s * v.x + self.t * v.y + self.n * v.z
     }

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod frame;
+mod functions;
 mod lane_set;
 mod lanes;
 mod motion;
@@ -14,6 +15,7 @@ mod vectorize;
 
 pub use bounds::Bounds3;
 pub use frame::Frame;
+pub use functions::{exp_minus, inverse_erf_of_less_one, ln, scaled_erfc};
 pub use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat2, Mat3, Mat4, Quat, Vec2, Vec3, Vec4};
 pub use lane_set::LaneSet;
 pub use lanes::{LANES, Lanes, Vec2Lanes, Vec3Lanes, VectorLanes};

@@ -1,10 +1,8 @@
 //! Surfaces that are Lambertian and nothing else, which integrators may take together.
 
 use super::Scene;
-use crate::geometry::Hit;
 use crate::material::Material;
 use crate::spectrum::SampledSpectrum;
-use crate::texture::SpectrumTexture;
 
 /// What is known of a geometry's surface before anything is looked up there: its reflectance, if it is Lambertian, the same everywhere and
 /// at all wavelengths, and no light.
@@ -19,16 +17,5 @@ impl Scene {
     #[inline]
     pub fn known_albedo(&self, geometry: u32) -> Option<SampledSpectrum> {
         self.known_albedos.get(geometry as usize).copied().flatten()
-    }
-
-    /// The reflectance of what was hit, if it is Lambertian and nothing else there: no light.
-    #[inline]
-    pub fn lambertian(&self, hit: Hit) -> Option<&SpectrumTexture> {
-        let surface = &self.surfaces[hit.geometry.index()];
-        let emits = surface.lights.get(hit.primitive.index()).is_some_and(Option::is_some);
-        if emits {
-            return None;
-        }
-        self.materials[surface.material as usize].lambertian()
     }
 }

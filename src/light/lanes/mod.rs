@@ -112,7 +112,6 @@ impl LightLanes {
             lights: &self.plain,
             has_planes: is_plane != [false; LANES],
             is_sphere,
-            turns: self.plain.spheres.turns(is_sphere, u[1]),
             p,
             u,
             samples: &mut self.samples,
@@ -143,7 +142,6 @@ impl LightLanes {
             lights: &self.plain,
             has_planes: true,
             is_sphere: [false; LANES],
-            turns: [[0.0; LANES]; 2],
             p,
             u,
             samples: &mut self.samples,
@@ -225,8 +223,6 @@ struct Compute<'a> {
     lights: &'a PlainLights,
     has_planes: bool,
     is_sphere: [bool; LANES],
-    /// See [`Spheres::turns`].
-    turns: [Lanes; 2],
     p: &'a Vec3Lanes,
     u: [&'a Lanes; 2],
     /// Written at the end, all at once: the compiler cannot know that they are apart from the others.
@@ -243,7 +239,7 @@ impl Kernel for Compute<'_> {
             points = self.lights.planes.points(self.p, self.u);
         }
         if self.is_sphere != [false; LANES] {
-            let on_spheres = self.lights.spheres.points(self.p, self.u[0], &self.turns);
+            let on_spheres = self.lights.spheres.points(self.p, self.u);
             points = on_spheres.or(self.is_sphere, &points);
         }
         let mut samples = LightSampleLanes::default();

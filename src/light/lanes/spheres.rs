@@ -44,26 +44,14 @@ impl Spheres {
         wanted
     }
 
-    /// Sine and cosine of the turns `u`, which no vector has, in some lanes.
-    #[inline]
-    pub fn turns(&self, lanes: [bool; LANES], u: &Lanes) -> [Lanes; 2] {
-        let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
-            if lanes[i] {
-                (sin[i], cos[i]) = warp::sin_cos_of_turn(u[i]);
-            }
-        }
-        [sin, cos]
-    }
-
-    /// [`Emitter::sample`](crate::light::emitter::Emitter::sample) from the points `from`, outside, for the numbers `u` and [`Self::turns`].
+    /// [`Emitter::sample`](crate::light::emitter::Emitter::sample) from the points `from`, outside.
     #[inline(always)]
-    pub fn points(&self, from: &Vec3Lanes, u: &Lanes, [sin, cos]: &[Lanes; 2]) -> Points {
+    pub fn points(&self, from: &Vec3Lanes, [ux, uy]: [&Lanes; 2]) -> Points {
         let mut points = Points::default();
         for i in 0..LANES {
             let (center, radius) = (self.center(i), self.radius[i]);
             let cone = Cone::of(from.get(i), center, radius);
-            let local = warp::direction_of_cone(u[i], Vec2::new(sin[i], cos[i]), cone.one_minus_cos);
+            let local = warp::sample_uniform_cone(Vec2::new(ux[i], uy[i]), cone.one_minus_cos);
             let outward = cone.surface_direction(local, radius);
             let pdf = warp::uniform_cone_pdf(cone.one_minus_cos);
             let point = sphere_point(center, radius, self.inward[i], outward, pdf);

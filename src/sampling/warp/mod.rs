@@ -16,9 +16,8 @@ mod plane;
 pub use direction::{
     cosine_hemisphere_pdf, invert_cosine_hemisphere, invert_uniform_cone, invert_uniform_hemisphere,
     invert_uniform_sphere, one_minus_cos, sample_cosine_hemisphere, sample_uniform_cone, sample_uniform_hemisphere,
-    sample_uniform_sphere, uniform_cone_pdf, uniform_hemisphere_pdf, uniform_sphere_pdf,
+    sample_uniform_sphere, sin_cos_of_turn, uniform_cone_pdf, uniform_hemisphere_pdf, uniform_sphere_pdf,
 };
-pub(crate) use direction::{direction_of_cone, sin_cos_of_turn};
 pub use interval::{invert_linear, invert_tent, linear_pdf, sample_linear, sample_tent, tent_pdf};
 pub use octahedral::{equal_area_square_to_sphere, invert_equal_area_square_to_sphere};
 pub use phase::{henyey_greenstein_pdf, invert_henyey_greenstein, sample_henyey_greenstein};

@@ -29,8 +29,8 @@ pub fn sample_uniform_disk(u: Vec2) -> Vec2 {
 
 /// Sine and cosine of π/4 times `t`, for `t` in [-1, 1]: their Taylor polynomials, within one unit in the last place of 1. No call
 /// and no branch, as the standard library's have.
-#[inline]
-fn sin_cos_of_octant(t: f32) -> (f32, f32) {
+#[inline(always)]
+pub(super) fn sin_cos_of_octant(t: f32) -> (f32, f32) {
     let x = FRAC_PI_4 * t;
     let x2 = x * x;
     let sin = x * (1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
