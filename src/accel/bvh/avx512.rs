@@ -7,6 +7,7 @@ use std::arch::x86_64::*;
 
 use super::Scene;
 use super::avx2::Avx2;
+use super::few::Few;
 use super::lanes::{BlockPlanes, Lanes};
 use super::leaf::Corners;
 use super::stream::{self, Plan};
@@ -37,13 +38,23 @@ impl Avx512 {
         filter: Option<&dyn HitFilter>,
     ) {
         // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
-        unsafe { intersect(self, scene, plan, rays, hits, filter) }
+        unsafe {
+            match scene.few_within(plan.exhaustive) {
+                Some(few) => intersect_few(self, (scene, few), rays, hits),
+                None => intersect(self, scene, plan, rays, hits, filter),
+            }
+        }
     }
 
     /// Occlusion, by packets.
     pub fn occluded(self, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         // SAFETY: `self` proves that the processor has AVX-512, AVX2 and FMA.
-        unsafe { occluded(self, scene, plan, rays, filter) }
+        unsafe {
+            match scene.few_within(plan.exhaustive) {
+                Some(few) => occluded_few(self, (scene, few), rays),
+                None => occluded(self, scene, plan, rays, filter),
+            }
+        }
     }
 }
 
@@ -62,6 +73,16 @@ fn intersect(
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
 fn occluded(s: Avx512, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
     stream::occluded(s, s.0, scene, plan, rays, filter);
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+fn intersect_few(s: Avx512, few: (&Scene, &Few), rays: &[RayPacket], hits: &mut [HitPacket]) {
+    stream::intersect_few(s, s.0, few, rays, hits);
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+fn occluded_few(s: Avx512, few: (&Scene, &Few), rays: &mut [RayPacket]) {
+    stream::occluded_few(s, s.0, few, rays);
 }
 
 /// Calls intrinsics that need AVX-512.

@@ -1,5 +1,7 @@
 //! A call's rays, put together to packets of rays that are likely to stay together.
 
+mod few;
+
 use super::Scene;
 use super::few::Few;
 use super::interleave::{self, Interleaved, Mates, Trip};
@@ -13,6 +15,8 @@ use super::tree::FixedTree;
 use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, LANES, RayPacket};
 
+pub use self::few::{intersect_few, occluded_few};
+
 impl Scene {
     /// Whether packets can be traced: all that moves is in instances.
     pub fn takes_packets(&self) -> bool {
@@ -20,7 +24,7 @@ impl Scene {
     }
 
     /// All primitives, if to test them takes at most `tests` tests of triangles.
-    fn few_within(&self, tests: usize) -> Option<&Few> {
+    pub fn few_within(&self, tests: usize) -> Option<&Few> {
         self.few.as_ref().filter(|few| few.tests() <= tests)
     }
 }
@@ -161,6 +165,33 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
         (packet, rest)
     }
 
+    /// Writes the hits of neighbouring packets, of which `rest` are still to be traced.
+    #[inline(always)]
+    fn keep(
+        &self,
+        packet: &Packet<'_, N>,
+        rest: u32,
+        given: &[RayPacket],
+        hits: &mut [HitPacket],
+        stack: &mut [u64; STACK],
+    ) {
+        for (i, hits) in hits.iter_mut().enumerate() {
+            let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
+            *hits = HitPacket {
+                geometry: at(&packet.ids[0]),
+                primitive: at(&packet.ids[1]),
+                instance: at(&packet.ids[2]),
+                t: std::array::from_fn(|lane| packet.prepared.rays.tfar[i * LANES + lane]),
+            };
+        }
+        for lane in lanes_of(rest) {
+            let (at, lane) = (lane / LANES, lane % LANES);
+            if let Some(query) = self.alone::<false>(&given[at], lane, stack) {
+                query.store(&mut hits[at], lane);
+            }
+        }
+    }
+
     /// Traces rays that have little in common.
     #[inline(always)]
     fn one_by_one<const ANY: bool>(
@@ -205,10 +236,8 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, filter);
     let mut room = Room::take();
-    if let Some(few) = scene.few_within(plan.exhaustive) {
-        as_they_come(&call, Some(few), packets, hits, &mut room.stack);
-    } else if plan.as_they_come {
-        as_they_come(&call, None, packets, hits, &mut room.stack);
+    if plan.as_they_come {
+        as_they_come(&call, packets, hits, &mut room.stack);
     } else if packets.len() <= plan.few_packets || !plan.is_together(kernel, scene, tree, packets) {
         let Room { stack, interleave, .. } = &mut *room;
         call.one_by_one::<false>(packets, (stack, interleave), |mates| {
@@ -231,32 +260,14 @@ pub fn intersect<S: Lanes<N>, K: Interleaved, const N: usize>(
 #[inline(always)]
 fn as_they_come<S: Lanes<N>, K: Interleaved, const N: usize>(
     call: &Call<'_, S, K, N>,
-    few: Option<&Few>,
     packets: &[RayPacket],
     hits: &mut [HitPacket],
     stack: &mut [u64; STACK],
 ) {
     for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
         let (rays, lanes) = neighbours(given);
-        let (packet, rest) = match few {
-            Some(few) => call.exhaust::<false>(few, rays, lanes),
-            None => call.trace::<false>(rays, lanes, stack),
-        };
-        for (i, hits) in hits.iter_mut().enumerate() {
-            let at = |row: &[u32; N]| std::array::from_fn(|lane| row[i * LANES + lane]);
-            *hits = HitPacket {
-                geometry: at(&packet.ids[0]),
-                primitive: at(&packet.ids[1]),
-                instance: at(&packet.ids[2]),
-                t: std::array::from_fn(|lane| packet.prepared.rays.tfar[i * LANES + lane]),
-            };
-        }
-        for lane in lanes_of(rest) {
-            let (at, lane) = (lane / LANES, lane % LANES);
-            if let Some(query) = call.alone::<false>(&given[at], lane, stack) {
-                query.store(&mut hits[at], lane);
-            }
-        }
+        let (packet, rest) = call.trace::<false>(rays, lanes, stack);
+        call.keep(&packet, rest, given, hits, stack);
     }
 }
 
@@ -318,23 +329,6 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
         classes,
         places,
     } = &mut *room;
-    if let Some(few) = scene.few_within(plan.exhaustive) {
-        for given in packets.chunks_mut(N / LANES) {
-            let (rays, lanes) = neighbours(given);
-            let (packet, rest) = call.exhaust::<true>(few, rays, lanes);
-            let mut found = packet.hits(s) & lanes;
-            for lane in lanes_of(rest) {
-                if let Some(query) = call.alone::<true>(&given[lane / LANES], lane % LANES, stack) {
-                    found |= u32::from(query.is_hit()) << lane;
-                }
-            }
-            for lane in lanes_of(found) {
-                given[lane / LANES].tfar[lane % LANES] = f32::NEG_INFINITY;
-            }
-        }
-        room.put();
-        return;
-    }
     for packets in packets.chunks_mut(BATCH / LANES) {
         if !plan.is_together(kernel, scene, tree, packets) {
             let mut found = [0u8; BATCH / LANES];

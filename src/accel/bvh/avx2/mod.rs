@@ -11,6 +11,7 @@ mod triangles;
 use std::arch::x86_64::*;
 
 use super::Scene;
+use super::few::Few;
 use super::kernel::{BoxHits, Kernel, TriangleHits};
 use super::leaf::{BlockIds, Corners};
 use super::node::ChildRef;
@@ -50,13 +51,23 @@ impl Avx2 {
         filter: Option<&dyn HitFilter>,
     ) {
         // SAFETY: `self` proves that the processor has AVX2 and FMA.
-        unsafe { intersect(self, scene, plan, rays, hits, filter) }
+        unsafe {
+            match scene.few_within(plan.exhaustive) {
+                Some(few) => intersect_few(self, (scene, few), rays, hits),
+                None => intersect(self, scene, plan, rays, hits, filter),
+            }
+        }
     }
 
     /// Occlusion, by packets.
     pub fn occluded(self, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
         // SAFETY: `self` proves that the processor has AVX2 and FMA.
-        unsafe { occluded(self, scene, plan, rays, filter) }
+        unsafe {
+            match scene.few_within(plan.exhaustive) {
+                Some(few) => occluded_few(self, (scene, few), rays),
+                None => occluded(self, scene, plan, rays, filter),
+            }
+        }
     }
 }
 
@@ -75,6 +86,16 @@ fn intersect(
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn occluded(kernel: Avx2, scene: &Scene, plan: Plan, rays: &mut [RayPacket], filter: Option<&dyn HitFilter>) {
     stream::occluded(kernel, kernel, scene, plan, rays, filter);
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+fn intersect_few(kernel: Avx2, few: (&Scene, &Few), rays: &[RayPacket], hits: &mut [HitPacket]) {
+    stream::intersect_few(kernel, kernel, few, rays, hits);
+}
+
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+fn occluded_few(kernel: Avx2, few: (&Scene, &Few), rays: &mut [RayPacket]) {
+    stream::occluded_few(kernel, kernel, few, rays);
 }
 
 const CACHE_LINE: usize = 64;
