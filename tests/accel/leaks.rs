@@ -133,6 +133,7 @@ fn all() -> Vec<Closed> {
 fn contenders(world: &Arc<World>) -> Vec<(String, Box<dyn Accel>, bool)> {
     // In the usual tier Embree, which promises nothing, has few.
     let has_all = |name: &str| name == "bvh" || is_full() && !name.contains("bvh");
+    #[cfg_attr(not(feature = "embree"), expect(unused_mut, reason = "Embree is added"))]
     let mut all: Vec<_> = backends(world)
         .into_iter()
         .map(|(name, accel)| (name.clone(), accel, has_all(&name)))
