@@ -129,10 +129,11 @@ impl Bvh {
             let scene = Arc::clone(&self.scene);
             (name, Self { scene, tracing })
         };
-        Tracing::all().into_iter().map(variant).collect()
+        let is_there = |(_, tracing): &(String, Tracing)| self.scene.few.is_some() || !tracing.is_for_few();
+        Tracing::all().into_iter().filter(is_there).map(variant).collect()
     }
 
-    /// The names of [`Bvh::variants`].
+    /// The names of [`Bvh::variants`] of worlds of few primitives, which have all of them.
     pub fn variant_names() -> Vec<String> {
         Tracing::all().into_iter().map(|(name, _)| name).collect()
     }

@@ -121,6 +121,11 @@ impl Tracing {
         !matches!(self.instructions, Instructions::Portable(_))
     }
 
+    /// Whether it is a way of its own for worlds of few primitives only.
+    pub fn is_for_few(self) -> bool {
+        self.way == Way::Exhaustive
+    }
+
     /// All that the processor has, by name.
     pub fn all() -> Vec<(String, Self)> {
         let ways = |instructions: Instructions| {
@@ -151,9 +156,9 @@ impl Tracing {
     fn plan(self, kind: RayKind) -> Plan {
         let together = match self.way {
             Way::Usual if kind == RayKind::Shadow => SHADOWS,
-            Way::Usual | Way::Exhaustive => BOUNCES,
+            Way::Usual => BOUNCES,
             Way::Packets => ALL,
-            Way::Interleaved | Way::Single => &[],
+            Way::Exhaustive | Way::Interleaved | Way::Single => &[],
         };
         Plan {
             exhaustive: match self.way {

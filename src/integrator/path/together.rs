@@ -6,6 +6,8 @@ mod lobes;
 mod scatter;
 mod send;
 
+use std::marker::PhantomData;
+
 use super::{FIRST_ROULETTE_DEPTH, PathIntegrator, PathStage};
 use crate::desc::{Heuristic, Strategy};
 use crate::geometry::Hit;
@@ -114,15 +116,18 @@ impl PathIntegrator {
             lights,
             paths,
         } = &*stage.memory;
-        let scattered = vectorizer.run(Scatter::<L>::new(
-            packet,
+        let scattered = vectorizer.run(Scatter::<L> {
+            rays: packet.rays,
+            lanes: packet.lanes,
+            surfaces: packet.surfaces.all(),
             numbers,
             paths,
-            lights.samples(),
-            self.heuristic == Heuristic::Power,
-            stage.depth,
-            self.max_depth.is_none(),
-        ));
+            lights: lights.samples(),
+            is_power: self.heuristic == Heuristic::Power,
+            depth: stage.depth,
+            is_unlimited: self.max_depth.is_none(),
+            lobes: PhantomData,
+        });
         scattered.send(stage, packet, chosen);
     }
 }

@@ -1,4 +1,5 @@
 //! A call's rays among few primitives: packets of neighbours. Functions of their own, or the others would get fewer registers.
+//! They have no filter, as few primitives never do ([`Few`]).
 
 use super::{Call, neighbours};
 use crate::accel::bvh::Scene;

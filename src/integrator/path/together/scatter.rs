@@ -9,7 +9,6 @@ use crate::integrator::direct::Origin;
 use crate::integrator::lane::LanePacket;
 use crate::integrator::numbers::OneLobeLanes;
 use crate::integrator::path::survival;
-use crate::integrator::stage::PacketVertices;
 use crate::light::LightSampleLanes;
 use crate::material::{LaneSample, LaneValue};
 use crate::math::{Frame, Kernel, LANES, Lanes, Vec2, Vec3, Vec3Lanes, VectorLanes, offset_ray_origin};
@@ -36,44 +35,20 @@ pub struct Scattered {
 
 /// Where paths go from surfaces with lobes of a kind.
 pub struct Scatter<'a, L> {
-    rays: &'a RayPacket,
-    lanes: &'a LanePacket<Origin>,
-    surfaces: &'a Surfaces,
-    numbers: &'a OneLobeLanes,
-    paths: &'a Paths,
-    lights: &'a LightSampleLanes,
-    is_power: bool,
-    depth: u32,
-    is_unlimited: bool,
-    lobes: PhantomData<L>,
-}
-
-impl<'a, L> Scatter<'a, L> {
-    /// The paths of a packet after `depth` events, and the points of lights that they have found, which are weighed by the power heuristic or by the balance
-    /// heuristic.
-    #[inline(always)]
-    pub fn new(
-        packet: &'a PacketVertices<'_, Origin>,
-        numbers: &'a OneLobeLanes,
-        paths: &'a Paths,
-        lights: &'a LightSampleLanes,
-        is_power: bool,
-        depth: u32,
-        is_unlimited: bool,
-    ) -> Self {
-        Self {
-            rays: packet.rays,
-            lanes: packet.lanes,
-            surfaces: packet.surfaces.all(),
-            numbers,
-            paths,
-            lights,
-            is_power,
-            depth,
-            is_unlimited,
-            lobes: PhantomData,
-        }
-    }
+    pub rays: &'a RayPacket,
+    pub lanes: &'a LanePacket<Origin>,
+    pub surfaces: &'a Surfaces,
+    pub numbers: &'a OneLobeLanes,
+    pub paths: &'a Paths,
+    /// The points of lights that they have found.
+    pub lights: &'a LightSampleLanes,
+    /// Whether these are weighed by the power heuristic, or by the balance heuristic.
+    pub is_power: bool,
+    /// Scattering events before.
+    pub depth: u32,
+    /// Whether there can be any number.
+    pub is_unlimited: bool,
+    pub lobes: PhantomData<L>,
 }
 
 impl<L: Lobes> Kernel for Scatter<'_, L> {
