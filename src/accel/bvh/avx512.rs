@@ -8,9 +8,11 @@ use std::arch::x86_64::*;
 use super::Scene;
 use super::avx2::Avx2;
 use super::few::Few;
-use super::lanes::{BlockPlanes, Lanes};
+use super::lanes::{BlockPlanes, Lanes, WideRays};
 use super::leaf::Corners;
+use super::prepare::Rays;
 use super::stream::{self, Plan};
+use super::triangle::Plane;
 use crate::accel::HitFilter;
 use crate::geometry::{HitPacket, RayPacket};
 
@@ -96,6 +98,7 @@ macro_rules! with {
 
 impl Lanes<16> for Avx512 {
     type F = __m512;
+    type D = [__m512d; 2];
     type U = __m512i;
     type M = __mmask16;
 
@@ -179,13 +182,6 @@ impl Lanes<16> for Avx512 {
         with!(_mm512_mask_blend_ps(m, a, b))
     }
     #[inline(always)]
-    fn pick(self, from: &[f32; 8], at: __m512i) -> __m512 {
-        with!({
-            let from = _mm512_castps256_ps512(_mm256_loadu_ps(from.as_ptr()));
-            _mm512_permutexvar_ps(at, from)
-        })
-    }
-    #[inline(always)]
     fn splat_u(self, x: u32) -> __m512i {
         with!(_mm512_set1_epi32(x as i32))
     }
@@ -214,40 +210,46 @@ impl Lanes<16> for Avx512 {
         Lanes::<8>::planes(self.0, corners)
     }
     #[inline(always)]
-    fn plane_distance(
-        self,
-        normal: [f64; 3],
-        corner: [f64; 3],
-        origin: &[[f32; 16]; 3],
-        direction: &[[f32; 16]; 3],
-    ) -> __m512 {
+    fn widen(self, rays: &Rays<16>) -> WideRays<[__m512d; 2]> {
+        with!(WideRays {
+            origin: halves(&rays.origin),
+            direction: halves(&rays.direction),
+        })
+    }
+    #[inline(always)]
+    fn plane_distance(self, plane: &Plane, rays: &WideRays<[__m512d; 2]>) -> __m512 {
         with!({
-            let low = _mm512_castps256_ps512(half_distance(corner, normal, origin, direction, 0));
-            _mm512_insertf32x8::<1>(low, half_distance(corner, normal, origin, direction, 8))
+            let low = _mm512_castps256_ps512(half_distance(plane, rays, 0));
+            _mm512_insertf32x8::<1>(low, half_distance(plane, rays, 1))
         })
     }
 }
 
-/// The distances of the eight lanes from `first` on, 0 or 8.
+/// Both halves of each row in double precision.
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
 #[inline]
-fn half_distance(
-    corner: [f64; 3],
-    normal: [f64; 3],
-    origin: &[[f32; 16]; 3],
-    direction: &[[f32; 16]; 3],
-    first: usize,
-) -> __m256 {
-    let wide = |row: &[f32; 16]| {
-        // SAFETY: eight floats from 0 or 8 on, of sixteen.
+fn halves([x, y, z]: &[[f32; 16]; 3]) -> [[__m512d; 2]; 3] {
+    let half = |row: &[f32; 16], first: usize| {
+        // SAFETY: half of the floats, from the first or the middle one on.
         _mm512_cvtps_pd(unsafe { _mm256_loadu_ps(row.as_ptr().add(first)) })
     };
-    let height = |axis: usize| _mm512_sub_pd(_mm512_set1_pd(corner[axis]), wide(&origin[axis]));
+    [
+        [half(x, 0), half(x, 8)],
+        [half(y, 0), half(y, 8)],
+        [half(z, 0), half(z, 8)],
+    ]
+}
+
+/// The distances of the first or the second half of the lanes.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,popcnt")]
+#[inline]
+fn half_distance(plane: &Plane, rays: &WideRays<[__m512d; 2]>, half: usize) -> __m256 {
+    let height = |axis: usize| _mm512_sub_pd(_mm512_set1_pd(plane.corner[axis]), rays.origin[axis][half]);
+    let along = |axis: usize| rays.direction[axis][half];
     let dot = |x: __m512d, y: __m512d, z: __m512d| {
-        let term = |axis: usize, x: __m512d| _mm512_mul_pd(_mm512_set1_pd(normal[axis]), x);
+        let term = |axis: usize, x: __m512d| _mm512_mul_pd(_mm512_set1_pd(plane.normal[axis]), x);
         _mm512_add_pd(_mm512_add_pd(term(0, x), term(1, y)), term(2, z))
     };
     let above = dot(height(0), height(1), height(2));
-    let along = dot(wide(&direction[0]), wide(&direction[1]), wide(&direction[2]));
-    _mm512_cvtpd_ps(_mm512_div_pd(above, along))
+    _mm512_cvtpd_ps(_mm512_div_pd(above, dot(along(0), along(1), along(2))))
 }

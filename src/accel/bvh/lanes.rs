@@ -1,6 +1,8 @@
 //! Vectors of a number for each ray of a packet.
 
 use super::leaf::{Corners, LANES as TRIANGLES};
+use super::prepare::Rays;
+use super::triangle::Plane;
 
 /// Instructions on `N` lanes. Single operations round as scalars do, and none but [`Lanes::fused`] is fused.
 ///
@@ -10,6 +12,8 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     type F: Copy;
     /// An integer for each lane.
     type U: Copy;
+    /// A number of double precision for each lane.
+    type D: Copy;
     /// A truth value for each lane.
     type M: Copy;
 
@@ -40,8 +44,6 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn mask(self, bits: u32) -> Self::M;
     /// `b` where `m`, else `a`.
     fn blend(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
-    /// What each lane has chosen, by a number below 8.
-    fn pick(self, from: &[f32; 8], at: Self::U) -> Self::F;
     fn splat_u(self, x: u32) -> Self::U;
     fn load_u(self, x: &[u32; N]) -> Self::U;
     fn store_u(self, x: Self::U, to: &mut [u32; N]);
@@ -52,33 +54,39 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn none(self, a: Self::U) -> Self::M;
     /// The planes of the triangles of a block.
     fn planes(self, corners: &Corners) -> BlockPlanes;
-    /// The distances of a plane with a normal and a corner, by the operations of [`Plane::distance`](super::triangle::Plane::distance),
-    /// rounded to single precision at the end.
-    fn plane_distance(
-        self,
-        normal: [f64; 3],
-        corner: [f64; 3],
-        origin: &[[f32; N]; 3],
-        direction: &[[f32; N]; 3],
-    ) -> Self::F;
+    /// Origins and directions in double precision.
+    fn widen(self, rays: &Rays<N>) -> WideRays<Self::D>;
+    /// The distances of a plane, by the operations of [`Plane::distance`], rounded to single precision at the end.
+    fn plane_distance(self, plane: &Plane, rays: &WideRays<Self::D>) -> Self::F;
+}
+
+/// Rays in double precision.
+pub struct WideRays<D> {
+    /// Origins, by axis.
+    pub origin: [D; 3],
+    /// Directions, by axis.
+    pub direction: [D; 3],
 }
 
 /// The planes of four triangles: first corners and normals, by axis and triangle.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct BlockPlanes {
-    /// See [`Plane::corner`](super::triangle::Plane::corner).
+    /// See [`Plane::corner`].
     pub corner: [[f64; TRIANGLES]; 3],
-    /// See [`Plane::normal`](super::triangle::Plane::normal).
+    /// See [`Plane::normal`].
     pub normal: [[f64; TRIANGLES]; 3],
 }
 
 impl BlockPlanes {
-    /// The normal and the first corner of a triangle.
+    /// That of a triangle.
     #[inline(always)]
-    pub fn of(&self, triangle: usize) -> [[f64; 3]; 2] {
+    pub fn of(&self, triangle: usize) -> Plane {
         let of = |[x, y, z]: &[[f64; TRIANGLES]; 3]| [x[triangle], y[triangle], z[triangle]];
-        [of(&self.normal), of(&self.corner)]
+        Plane {
+            corner: of(&self.corner),
+            normal: of(&self.normal),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::cell::Cell;
 
 use super::interleave;
 use super::lanes::Lanes;
+use super::packet::SeenRoom;
 use super::traverse::STACK;
 use crate::geometry::{LANES, RayPacket};
 use crate::math::Bounds3;
@@ -31,6 +32,8 @@ const FEW_PACKETS: usize = 8;
 pub struct Room {
     /// For one ray, or a packet.
     pub stack: [u64; STACK],
+    /// For packets and few primitives.
+    pub seen: SeenRoom,
     /// For several rays on their way.
     pub interleave: interleave::Room,
     /// Of each ray of a batch, its class.
@@ -49,6 +52,7 @@ impl Room {
         ROOM.take().unwrap_or_else(|| {
             Box::new(Self {
                 stack: [0; STACK],
+                seen: SeenRoom::default(),
                 interleave: interleave::Room::new(),
                 classes: [0; BATCH],
                 places: [0; BATCH],

@@ -4,15 +4,18 @@
 //! by these rays. Where few are left they go on alone. Triangles are tested by the same operations in the same order as by a ray
 //! alone, so that the answers are the same to the last bit.
 
-// Distances are written for the children that are visited only.
+// Distances are written for the children that are visited only; places among few primitives are not checked each time.
 #![allow(unsafe_code)]
 
+mod balls;
 mod exhaustive;
+mod seen;
 mod stack;
 mod triangles;
 
 use std::mem::MaybeUninit;
 
+pub use self::seen::{Seen, SeenRoom};
 use self::stack::Stack;
 use super::kernel::Kernel;
 use super::lanes::{Lanes, lanes_of};
@@ -44,8 +47,24 @@ impl<'a, const N: usize> Packet<'a, N> {
     /// Prepares rays.
     #[inline(always)]
     pub fn new<S: Lanes<N>>(s: S, rays: Rays<N>, asked: Asked<'a>) -> Self {
+        Self::prepared(Prepared::new(s, rays), asked)
+    }
+
+    /// Prepares rays that no tree is asked for.
+    #[inline(always)]
+    pub fn treeless<S: Lanes<N>>(s: S, rays: Rays<N>, asked: Asked<'a>) -> Self {
+        let mut prepared = Prepared {
+            rays,
+            ..Prepared::none()
+        };
+        prepared.prepare_shears(s);
+        Self::prepared(prepared, asked)
+    }
+
+    #[inline(always)]
+    fn prepared(prepared: Prepared<N>, asked: Asked<'a>) -> Self {
         Self {
-            prepared: Prepared::new(s, rays),
+            prepared,
             axes: [0, 1, 2],
             negative: [0; 3],
             ids: [[HitPacket::NONE; N]; 3],

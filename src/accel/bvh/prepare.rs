@@ -77,6 +77,22 @@ fn column<const N: usize>(rows: &[Row<N>; 3], lane: usize) -> [f32; 3] {
     [rows[0][lane], rows[1][lane], rows[2][lane]]
 }
 
+// Functions, not `array::map`, which is compiled without the instructions of `S`.
+#[inline(always)]
+fn load<S: Lanes<N>, const N: usize>(s: S, [x, y, z]: &[Row<N>; 3]) -> [S::F; 3] {
+    [s.load(x), s.load(y), s.load(z)]
+}
+
+#[inline(always)]
+fn sizes<S: Lanes<N>, const N: usize>(s: S, [x, y, z]: [S::F; 3]) -> [S::F; 3] {
+    [s.abs(x), s.abs(y), s.abs(z)]
+}
+
+#[inline(always)]
+fn greatest<S: Lanes<N>, const N: usize>(s: S, [x, y, z]: [S::F; 3]) -> S::F {
+    s.greatest(s.greatest(x, y), z)
+}
+
 impl<const N: usize> Prepared<N> {
     /// Rays that take no part, and nothing computed.
     #[inline(always)]
@@ -106,14 +122,16 @@ impl<const N: usize> Prepared<N> {
     /// Computes all of it from the rays.
     #[inline(always)]
     pub fn prepare<S: Lanes<N>>(&mut self, s: S) {
-        // Not by `array::map`, which is compiled without the instructions that `s` has.
-        let load = |rows: &[Row<N>; 3]| [s.load(&rows[0]), s.load(&rows[1]), s.load(&rows[2])];
-        let abs = |[x, y, z]: [S::F; 3]| [s.abs(x), s.abs(y), s.abs(z)];
-        let (origin, direction) = (load(&self.rays.origin), load(&self.rays.direction));
-        let (size, slope) = (abs(origin), abs(direction));
-        let most = |v: [S::F; 3]| s.greatest(s.greatest(v[0], v[1]), v[2]);
-        let (greatest, steepest) = (most(size), most(slope));
-        let least = s.mul(s.splat(LEAST_SLOPE), steepest);
+        self.prepare_shears(s);
+        self.prepare_slabs(s);
+    }
+
+    /// Computes what triangles need.
+    #[inline(always)]
+    pub fn prepare_shears<S: Lanes<N>>(&mut self, s: S) {
+        let direction = load(s, &self.rays.direction);
+        let slope = sizes(s, direction);
+        let steepest = greatest(s, slope);
         let [x, y, z] = slope;
         let is_x = s.and(s.lt(y, x), s.lt(z, x));
         let is_y = s.lt(z, y);
@@ -122,7 +140,6 @@ impl<const N: usize> Prepared<N> {
         let along = pick(dx, dy, dz);
         let bits = [s.bits(is_x), s.bits(is_y) & !s.bits(is_x)];
         let (smallest, largest) = (s.splat(*USUAL_SIZES.start()), s.splat(*USUAL_SIZES.end()));
-        self.negative = [s.signs(dx), s.signs(dy), s.signs(dz)];
         self.greatest = [bits[0], bits[1], !(bits[0] | bits[1])];
         self.usual = s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest)));
         s.store(s.div(pick(dy, dz, dx), along), &mut self.scale[0]);
@@ -130,12 +147,25 @@ impl<const N: usize> Prepared<N> {
         s.store(s.div(s.splat(1.0), along), &mut self.scale[2]);
         // Adding zero turns a negative zero into a positive one, whose bits compare as an integer.
         s.store(s.add(s.load(&self.rays.tnear), s.splat(0.0)), &mut self.rays.tnear);
+        let least = s.mul(s.splat(LEAST_SLOPE), steepest);
+        for axis in 0..3 {
+            let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
+            s.store(s.div(s.splat(1.0), scale), &mut self.inverse[axis]);
+        }
+    }
+
+    /// Computes what boxes need, from what triangles need.
+    #[inline(always)]
+    fn prepare_slabs<S: Lanes<N>>(&mut self, s: S) {
+        let (origin, direction) = (load(s, &self.rays.origin), load(s, &self.rays.direction));
+        let size = sizes(s, origin);
+        let greatest = greatest(s, size);
+        let [dx, dy, dz] = direction;
+        self.negative = [s.signs(dx), s.signs(dy), s.signs(dz)];
         for axis in 0..3 {
             let margin = s.mul(s.splat(MARGIN), s.add(size[axis], greatest));
             let margin = s.copysign(margin, direction[axis]);
-            let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
-            let scale = s.div(s.splat(1.0), scale);
-            s.store(scale, &mut self.inverse[axis]);
+            let scale = s.load(&self.inverse[axis]);
             let (near, far) = (s.mul(scale, s.splat(NEAR_SLACK)), s.mul(scale, s.splat(FAR_SLACK)));
             let minus = |x: S::F| s.sub(s.splat(0.0), x);
             s.store(near, &mut self.near_scale[axis]);

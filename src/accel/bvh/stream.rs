@@ -7,7 +7,7 @@ use super::few::Few;
 use super::interleave::{self, Interleaved, Mates, Trip};
 use super::lanes::{Lanes, lanes_of};
 use super::order::{BATCH, Place, Room, rays_of_class, sort};
-use super::packet::Packet;
+use super::packet::{Packet, Seen};
 use super::prepare::Rays;
 use super::query::{Asked, Query};
 use super::traverse::{Level, STACK, Walk};
@@ -23,16 +23,18 @@ impl Scene {
         self.top.fixed.is_some() && self.top.moving.is_empty()
     }
 
-    /// All primitives, if to test them takes at most `tests` tests of triangles.
+    /// All primitives, if to test them takes at most `tests` tests of triangles, or spheres are among them, which a tree is asked about ray
+    /// by ray.
     pub fn few_within(&self, tests: usize) -> Option<&Few> {
-        self.few.as_ref().filter(|few| few.tests() <= tests)
+        let is_within = |few: &&Few| few.tests() <= tests || (tests > 0 && !few.balls.is_empty());
+        self.few.as_ref().filter(is_within)
     }
 }
 
 /// How the rays of a call are put together.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Rays are tested against all primitives if that takes at most so many tests of triangles.
+    /// Rays are tested against all primitives if that takes at most so many tests of triangles; see [`Scene::few_within`].
     pub exhaustive: usize,
     /// Whether neighbours go together as they come; else rays are sorted. Not for occlusion.
     pub as_they_come: bool,
@@ -159,9 +161,9 @@ impl<'a, S: Lanes<N>, K: Interleaved, const N: usize> Call<'a, S, K, N> {
 
     /// Tests a packet against all there is; returns it, with the lanes that it left out.
     #[inline(always)]
-    fn exhaust<const ANY: bool>(&self, few: &Few, rays: Rays<N>, lanes: u32) -> (Packet<'a, N>, u32) {
-        let mut packet = Packet::new(self.s, rays, self.asked);
-        let rest = packet.exhaust::<S, ANY>(self.s, few, lanes);
+    fn exhaust<const ANY: bool>(&self, seen: &mut Seen<'_>, rays: Rays<N>, lanes: u32) -> (Packet<'a, N>, u32) {
+        let mut packet = Packet::treeless(self.s, rays, self.asked);
+        let rest = packet.exhaust::<S, ANY>(self.s, seen, lanes);
         (packet, rest)
     }
 
@@ -328,6 +330,7 @@ pub fn occluded<S: Lanes<N>, K: Interleaved, const N: usize>(
         interleave,
         classes,
         places,
+        ..
     } = &mut *room;
     for packets in packets.chunks_mut(BATCH / LANES) {
         if !plan.is_together(kernel, scene, tree, packets) {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::few::Few;
 use super::node::{Child, Node};
 use super::tree::{FixedTree, GroupTrees};
 use crate::accel::BuildQuality;
@@ -52,6 +53,21 @@ fn world(mesh: TriangleMesh) -> Arc<World> {
     let id = builder.add_geometry(Geometry::opaque(Shape::Mesh(mesh)));
     builder.root.geometries.push(id);
     Arc::new(builder.build().unwrap())
+}
+
+/// A cube from -`size` to `size`.
+fn cube(size: f32) -> TriangleMesh {
+    let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0;
+    let sides = [
+        [0, 1, 3, 2],
+        [4, 6, 7, 5],
+        [0, 4, 5, 1],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 5, 7, 3],
+    ];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    TriangleMesh::new(vec![(0..8).map(|i| size * corner(i)).collect()], triangles.collect()).unwrap()
 }
 
 fn build(world: &World, quality: BuildQuality, threads: usize) -> GroupTrees {
@@ -147,4 +163,44 @@ fn boxes_that_a_fast_build_cannot_order_have_trees_all_the_same() {
             assert_eq!(found.len() as u32, count, "{quality:?}");
         }
     }
+}
+
+#[test]
+fn few_triangles_share_corners_edges_and_ends_of_boxes() {
+    let few = Few::new(&world(cube(1.0))).unwrap();
+    let counts = [few.corners.len(), few.edges.len(), few.facets.len()];
+    assert_eq!(counts, [8, 18, 12]);
+    assert_eq!(few.ends, [[-1.0, 1.0]; 3]);
+    for facet in &few.facets {
+        // Each edge leads from one corner of the triangle to another.
+        let mut ends: Vec<u16> = facet
+            .edges
+            .iter()
+            .flat_map(|&edge| few.edges[usize::from(edge)])
+            .collect();
+        ends.sort_unstable();
+        assert!(ends.chunks(2).all(|pair| pair[0] == pair[1]), "{ends:?}");
+    }
+}
+
+#[test]
+fn worlds_of_several_masks_or_far_corners_or_many_triangles_are_not_few() {
+    assert!(Few::new(&world(cube(1e14))).is_some());
+    assert!(Few::new(&world(cube(1e16))).is_none());
+    assert!(Few::new(&world(sticks(50, 1))).is_some());
+    assert!(Few::new(&world(sticks(60, 1))).is_none());
+    assert!(Few::new(&world(sticks(50, 2))).is_none());
+    let of_masks = |masks: [u32; 2]| {
+        let mut builder = WorldBuilder::default();
+        for mask in masks {
+            let id = builder.add_geometry(Geometry {
+                mask,
+                ..Geometry::opaque(Shape::Mesh(cube(1.0)))
+            });
+            builder.root.geometries.push(id);
+        }
+        Few::new(&builder.build().unwrap())
+    };
+    assert!(of_masks([2, 2]).is_some());
+    assert!(of_masks([2, 3]).is_none());
 }

@@ -114,7 +114,7 @@ impl Shear {
             return None;
         }
         let plane = Plane::new(corners);
-        let t = plane.distance(self);
+        let t = plane.distance(self.origin, self.direction);
         let [enter, leave] = match self.range(corners, sheared.z) {
             range if range[0] <= range[1] => range,
             _ => self.wide_range(corners),
@@ -274,12 +274,12 @@ impl Plane {
         }
     }
 
-    /// Along the ray; not finite if it is parallel to the plane.
+    /// Along a ray; not finite if it is parallel to the plane.
     #[inline(always)]
-    fn distance(&self, ray: &Shear) -> f64 {
+    pub fn distance(&self, origin: [f32; 3], direction: [f32; 3]) -> f64 {
         let (a, n) = (&self.corner, &self.normal);
-        let [ox, oy, oz] = ray.origin.map(f64::from);
-        let [dx, dy, dz] = ray.direction.map(f64::from);
+        let [ox, oy, oz] = origin.map(f64::from);
+        let [dx, dy, dz] = direction.map(f64::from);
         let height = (n[0] * (a[0] - ox) + n[1] * (a[1] - oy)) + n[2] * (a[2] - oz);
         height / ((n[0] * dx + n[1] * dy) + n[2] * dz)
     }

@@ -3,8 +3,10 @@
 use std::arch::x86_64::*;
 
 use super::{Avx2, Wide};
-use crate::accel::bvh::lanes::{BlockPlanes, Lanes};
+use crate::accel::bvh::lanes::{BlockPlanes, Lanes, WideRays};
 use crate::accel::bvh::leaf::{Corners, LANES as TRIANGLES};
+use crate::accel::bvh::prepare::Rays;
+use crate::accel::bvh::triangle::Plane;
 
 /// Calls intrinsics that need AVX2 and FMA.
 macro_rules! with {
@@ -17,6 +19,7 @@ macro_rules! with {
 
 impl Lanes<8> for Avx2 {
     type F = __m256;
+    type D = [__m256d; 2];
     type U = __m256i;
     type M = __m256;
 
@@ -104,10 +107,6 @@ impl Lanes<8> for Avx2 {
         with!(_mm256_blendv_ps(a, b, m))
     }
     #[inline(always)]
-    fn pick(self, from: &[f32; 8], at: __m256i) -> __m256 {
-        with!(_mm256_permutevar8x32_ps(_mm256_loadu_ps(from.as_ptr()), at))
-    }
-    #[inline(always)]
     fn splat_u(self, x: u32) -> __m256i {
         with!(_mm256_set1_epi32(x as i32))
     }
@@ -139,16 +138,17 @@ impl Lanes<8> for Avx2 {
         with!(block_planes(corners))
     }
     #[inline(always)]
-    fn plane_distance(
-        self,
-        normal: [f64; 3],
-        corner: [f64; 3],
-        origin: &[[f32; 8]; 3],
-        direction: &[[f32; 8]; 3],
-    ) -> __m256 {
+    fn widen(self, rays: &Rays<8>) -> WideRays<[__m256d; 2]> {
+        with!(WideRays {
+            origin: halves(&rays.origin),
+            direction: halves(&rays.direction),
+        })
+    }
+    #[inline(always)]
+    fn plane_distance(self, plane: &Plane, rays: &WideRays<[__m256d; 2]>) -> __m256 {
         with!(_mm256_set_m128(
-            half_distance(corner, normal, origin, direction, 4),
-            half_distance(corner, normal, origin, direction, 0)
+            half_distance(plane, rays, 1),
+            half_distance(plane, rays, 0)
         ))
     }
 }
@@ -213,26 +213,31 @@ fn block_planes(corners: &Corners) -> BlockPlanes {
     planes
 }
 
-/// The distances of the four lanes from `first` on, 0 or 4.
+/// Both halves of each row in double precision.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn half_distance(
-    corner: [f64; 3],
-    normal: [f64; 3],
-    origin: &[[f32; 8]; 3],
-    direction: &[[f32; 8]; 3],
-    first: usize,
-) -> __m128 {
-    let wide = |row: &[f32; 8]| {
-        // SAFETY: four floats from 0 or 4 on, of eight.
+fn halves([x, y, z]: &[[f32; 8]; 3]) -> [[__m256d; 2]; 3] {
+    let half = |row: &[f32; 8], first: usize| {
+        // SAFETY: half of the floats, from the first or the middle one on.
         _mm256_cvtps_pd(unsafe { _mm_loadu_ps(row.as_ptr().add(first)) })
     };
-    let height = |axis: usize| _mm256_sub_pd(_mm256_set1_pd(corner[axis]), wide(&origin[axis]));
+    [
+        [half(x, 0), half(x, 4)],
+        [half(y, 0), half(y, 4)],
+        [half(z, 0), half(z, 4)],
+    ]
+}
+
+/// The distances of the first or the second half of the lanes.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn half_distance(plane: &Plane, rays: &WideRays<[__m256d; 2]>, half: usize) -> __m128 {
+    let height = |axis: usize| _mm256_sub_pd(_mm256_set1_pd(plane.corner[axis]), rays.origin[axis][half]);
+    let along = |axis: usize| rays.direction[axis][half];
     let dot = |x: __m256d, y: __m256d, z: __m256d| {
-        let term = |axis: usize, x: __m256d| _mm256_mul_pd(_mm256_set1_pd(normal[axis]), x);
+        let term = |axis: usize, x: __m256d| _mm256_mul_pd(_mm256_set1_pd(plane.normal[axis]), x);
         _mm256_add_pd(_mm256_add_pd(term(0, x), term(1, y)), term(2, z))
     };
     let above = dot(height(0), height(1), height(2));
-    let along = dot(wide(&direction[0]), wide(&direction[1]), wide(&direction[2]));
-    _mm256_cvtpd_ps(_mm256_div_pd(above, along))
+    _mm256_cvtpd_ps(_mm256_div_pd(above, dot(along(0), along(1), along(2))))
 }

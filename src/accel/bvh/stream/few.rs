@@ -21,10 +21,12 @@ pub fn intersect_few<S: Lanes<N>, K: Interleaved, const N: usize>(
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, None);
     let mut room = Room::take();
+    let Room { stack, seen, .. } = &mut *room;
+    let mut seen = seen.of(few);
     for (given, hits) in packets.chunks(N / LANES).zip(hits.chunks_mut(N / LANES)) {
         let (rays, lanes) = neighbours(given);
-        let (packet, rest) = call.exhaust::<false>(few, rays, lanes);
-        call.keep(&packet, rest, given, hits, &mut room.stack);
+        let (packet, rest) = call.exhaust::<false>(&mut seen, rays, lanes);
+        call.keep(&packet, rest, given, hits, stack);
     }
     room.put();
 }
@@ -40,10 +42,11 @@ pub fn occluded_few<S: Lanes<N>, K: Interleaved, const N: usize>(
     let Some(tree) = &scene.top.fixed else { return };
     let call = Call::new(s, kernel, scene, tree, None);
     let mut room = Room::take();
-    let Room { stack, .. } = &mut *room;
+    let Room { stack, seen, .. } = &mut *room;
+    let mut seen = seen.of(few);
     for given in packets.chunks_mut(N / LANES) {
         let (rays, lanes) = neighbours(given);
-        let (packet, rest) = call.exhaust::<true>(few, rays, lanes);
+        let (packet, rest) = call.exhaust::<true>(&mut seen, rays, lanes);
         let mut found = packet.hits(s) & lanes;
         for lane in lanes_of(rest) {
             if let Some(query) = call.alone::<true>(&given[lane / LANES], lane % LANES, stack) {
