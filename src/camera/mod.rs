@@ -11,7 +11,7 @@ mod spherical;
 use std::sync::Arc;
 
 pub use self::importance::{CameraConnection, CameraDensity, CameraRay, RasterDomain};
-pub use self::lanes::CameraLanes;
+pub use self::lanes::{CameraLanes, CameraSampleLanes};
 pub use self::realistic::{Realistic, RealisticSpec};
 
 use self::planar::Planar;

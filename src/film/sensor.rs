@@ -39,6 +39,15 @@ pub struct Sensor {
     color_space: ColorSpace,
 }
 
+/// A [`Sensor`] of rgb mode.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearSensor {
+    response: Mat3,
+    rgb_from_sensor: Mat3,
+    imaging_ratio: f32,
+    max_component: f32,
+}
+
 #[derive(Clone, Debug)]
 enum Response {
     /// Rgb mode: a matrix from linear sRGB.
@@ -132,10 +141,24 @@ impl Sensor {
         }
     }
 
+    /// It for kernels, if it looks at no wavelengths.
+    #[inline]
+    pub fn linear(&self) -> Option<LinearSensor> {
+        match self.response {
+            Response::Lanes(response) => Some(LinearSensor {
+                response,
+                rgb_from_sensor: self.rgb_from_sensor,
+                imaging_ratio: self.imaging_ratio,
+                max_component: self.max_component,
+            }),
+            Response::Observer | Response::Curves(_) => None,
+        }
+    }
+
     #[inline]
     fn to_rgb_within(&self, l: SampledSpectrum, lambda: &Wavelengths, max_component: f32) -> [f32; 3] {
-        let mut sensor = match &self.response {
-            Response::Lanes(matrix) => *matrix * Vec3::new(l.0[0], l.0[1], l.0[2]),
+        let sensor = match &self.response {
+            Response::Lanes(matrix) => from_lanes(matrix, l),
             Response::Observer => {
                 let l = l.safe_div(lambda.pdf());
                 cie::xyz_bar(lambda).map(|bar| (bar * l).mean()).into()
@@ -145,12 +168,35 @@ impl Sensor {
                 tables.each_ref().map(|table| (table.sample(lambda) * l).mean()).into()
             }
         };
-        let largest = sensor.max_element() * self.imaging_ratio;
-        if largest > max_component {
-            sensor *= max_component / largest;
-        }
-        (self.rgb_from_sensor * sensor).into()
+        limited(sensor, self.imaging_ratio, max_component, &self.rgb_from_sensor).into()
     }
+}
+
+impl LinearSensor {
+    /// [`Sensor::to_rgb`] at any wavelengths.
+    #[inline(always)]
+    pub fn to_rgb(&self, l: SampledSpectrum) -> Vec3 {
+        let sensor = from_lanes(&self.response, l);
+        limited(sensor, self.imaging_ratio, self.max_component, &self.rgb_from_sensor)
+    }
+}
+
+/// What the sensor says of the lanes of rgb mode.
+#[inline(always)]
+fn from_lanes(response: &Mat3, l: SampledSpectrum) -> Vec3 {
+    *response * Vec3::new(l.0[0], l.0[1], l.0[2])
+}
+
+/// Linear RGB of what the sensor says, which is scaled down if it says too much.
+#[inline(always)]
+fn limited(sensor: Vec3, imaging_ratio: f32, max_component: f32, rgb_from_sensor: &Mat3) -> Vec3 {
+    let largest = sensor.max_element() * imaging_ratio;
+    let scale = if largest > max_component {
+        max_component / largest
+    } else {
+        1.0
+    };
+    *rgb_from_sensor * (sensor * scale)
 }
 
 /// From XYZ to XYZ: what has the colour of daylight of a temperature gets that of the white of a space. Bradford's cone responses, as

@@ -12,6 +12,7 @@ pub const TILE_SIZE: u32 = 32;
 
 /// The sums of one pixel: weighted linear RGB and weights, in units of 2^-64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(align(64))]
 struct PixelSums {
     rgb: [i128; 3],
     weight: i128,
@@ -75,31 +76,48 @@ impl TileSums {
     #[inline]
     pub fn add(&mut self, x: u32, y: u32, rgb: Option<[f32; 3]>, weight: f32) -> bool {
         let index = self.index(x, y);
-        let sums = &mut self.pixels[index];
         let w = f64::from(weight);
-        sums.weight += quantize(w).unwrap_or(0);
-        let quantized = rgb.and_then(|[r, g, b]| {
-            Some([
-                quantize(w * f64::from(r))?,
-                quantize(w * f64::from(g))?,
-                quantize(w * f64::from(b))?,
-            ])
+        let quantized = rgb.and_then(|rgb| {
+            let [r, g, b] = rgb.map(f64::from);
+            Some((rgb, [quantize(w * r)?, quantize(w * g)?, quantize(w * b)?]))
         });
+        let (_, [r, g, b]) = quantized.unwrap_or_default();
+        self.add_quantized(index, [r, g, b, quantize(w).unwrap_or(0)]);
         match quantized {
-            Some(quantized) => {
-                for (sum, value) in sums.rgb.iter_mut().zip(quantized) {
-                    *sum += value;
-                }
-                if let (Some(square), Some(rgb)) = (self.squares.get_mut(index), rgb) {
-                    *square += (luminance(rgb.map(f64::from)).powi(2) * SQUARE_SCALE) as i128;
-                }
-                true
-            }
-            None => {
-                self.dropped += 1;
-                false
-            }
+            Some((rgb, _)) => self.add_square(index, rgb),
+            None => self.count_dropped(1),
         }
+        quantized.is_some()
+    }
+
+    /// Adds red, green, blue and a weight.
+    #[inline]
+    pub(super) fn add_quantized(&mut self, index: usize, [r, g, b, weight]: [i128; 4]) {
+        let sums = &mut self.pixels[index];
+        for (sum, value) in sums.rgb.iter_mut().zip([r, g, b]) {
+            *sum += value;
+        }
+        sums.weight += weight;
+    }
+
+    /// Whether there are sums of squares.
+    #[inline]
+    pub(super) fn has_squares(&self) -> bool {
+        !self.squares.is_empty()
+    }
+
+    /// Adds the square of a colour, if there are such sums.
+    #[inline]
+    pub(super) fn add_square(&mut self, index: usize, rgb: [f32; 3]) {
+        if let Some(square) = self.squares.get_mut(index) {
+            *square += (luminance(rgb.map(f64::from)).powi(2) * SQUARE_SCALE) as i128;
+        }
+    }
+
+    /// Counts samples that were dropped.
+    #[inline]
+    pub(super) fn count_dropped(&mut self, samples: u64) {
+        self.dropped += samples;
     }
 
     /// The filter weight of all samples of a pixel.

@@ -232,16 +232,17 @@ impl RayQueue {
         self.len += 1;
     }
 
-    /// Adds eight rays, of which some may take no part, to others that are whole packets.
-    pub fn push_packet(&mut self, rays: &RayPacket) {
+    /// Adds eight rays, of which some may take no part, to others that are whole packets: they are what happens to be there, for the caller
+    /// to write.
+    #[inline]
+    pub fn push_any_packet(&mut self) -> &mut RayPacket {
         debug_assert!(self.len.is_multiple_of(LANES));
         let packet = self.len / LANES;
         if packet == self.packets.len() {
-            self.packets.push(*rays);
-        } else {
-            self.packets[packet] = *rays;
+            self.packets.push(RayPacket::EMPTY);
         }
         self.len += LANES;
+        &mut self.packets[packet]
     }
 
     /// Adds the chosen lanes of `rays`, `packing` being for as many as there are.

@@ -1,7 +1,7 @@
 //! From the ids of a hit to the surface there. Distance and position are recomputed from ray and primitive in double precision,
 //! so that they do not depend on the backend or on its vector width.
 
-use super::triangle::{self, LEAST_ERROR, rounding_error};
+use super::triangle::{self, Corners, Facing, LEAST_ERROR, Parametrization, rounding_error};
 use super::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
 use crate::math::{DAffine3, DVec3, Vec2, Vec3, gamma, offset_ray_origin};
 
@@ -214,15 +214,17 @@ fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, directi
     let vertices = mesh.triangle(triangle, time);
     let point = triangle::point(&vertices, origin, direction);
     let (barycentrics, ng) = point.in_single_precision();
-    let attributes = mesh.corners(triangle).at(&vertices, ng, barycentrics);
+    let Corners { normals, uvs, side } = mesh.corners(triangle);
+    let Facing { side, ns } = Facing::at(&normals, side, ng, barycentrics);
+    let Parametrization { dpdu, dpdv, uv } = Parametrization::at(&uvs, &vertices, barycentrics);
     LocalSurface {
         p: point.p,
         error: point.error,
-        ng: point.ng * f64::from(attributes.side),
-        ns: attributes.ns,
-        dpdu: attributes.dpdu,
-        dpdv: attributes.dpdv,
-        uv: attributes.uv,
+        ng: point.ng * f64::from(side),
+        ns,
+        dpdu,
+        dpdv,
+        uv,
         barycentrics: barycentrics.into(),
     }
 }

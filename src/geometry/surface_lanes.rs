@@ -1,34 +1,72 @@
 //! The surfaces that eight rays hit, computed together.
 
+use std::cell::OnceCell;
+use std::sync::Arc;
+
 use super::mesh::{NO_NORMALS, PLAIN_UVS};
-use super::triangle::{self, Corners, rounding_error};
+use super::triangle::{self, Facing, Parametrization, rounding_error};
 use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
-use crate::math::{Kernel, LANES, Lanes, Vec2, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
+use crate::math::{Kernel, LANES, LaneSet, Lanes, Vec2, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 
 /// The surfaces that the lanes of a packet hit: the bits of [`World::interaction`], several times faster where they hit triangles in
-/// world space. Made once and filled again and again.
+/// world space. Made once for a world and filled again and again.
 #[derive(Clone, Debug, Default)]
-pub struct SurfaceLanes {
+pub struct SurfaceLanes<'a> {
     vectorizer: Vectorizer,
+    /// By geometry; of those that are no meshes, or that move, nothing.
+    meshes: Arc<[Mesh<'a>]>,
     triangles: Triangles,
     /// Whether the lane hit a triangle in world space.
     is_triangle: [bool; LANES],
     surfaces: Surfaces,
+    /// Of triangles, once it is asked for.
+    parametrizations: OnceCell<Parametrizations>,
     /// Of lanes that hit something else.
     others: [Option<SurfaceInteraction>; LANES],
 }
 
-/// What [`triangle::point`] and [`Corners::at`] are given.
+/// What a mesh has, at hand.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mesh<'a> {
+    indices: &'a [[u32; 3]],
+    /// As many as there are normals, if there are any.
+    positions: &'a [Vec3],
+    /// Empty if it has none.
+    normals: &'a [Vec3],
+    /// Empty if it has none.
+    uvs: &'a [Vec2],
+    /// See [`Corners::side`](triangle::Corners::side).
+    side: f32,
+    /// It, if it moves.
+    moving: Option<&'a TriangleMesh>,
+}
+
+impl<'a> Mesh<'a> {
+    /// Of a geometry's shape; without triangles if it is none.
+    fn of(shape: &'a Shape) -> Self {
+        let Shape::Mesh(mesh) = shape else {
+            return Self::default();
+        };
+        Self {
+            indices: mesh.indices(),
+            positions: mesh.positions(0),
+            normals: mesh.normals().unwrap_or_default(),
+            uvs: mesh.uvs().unwrap_or_default(),
+            side: mesh.side(),
+            moving: Some(mesh).filter(|mesh| mesh.is_moving()),
+        }
+    }
+}
+
+/// What [`triangle::point`] and [`Facing::at`] are given.
 #[derive(Clone, Copy, Debug, Default)]
 struct Triangles {
     /// Of each corner what the lanes have, one after the other: as meshes have it, in two copies and not in three.
     vertices: [[Vec3; LANES]; 3],
     normals: [[Vec3; LANES]; 3],
-    uvs: [[Vec2; LANES]; 3],
     side: Lanes,
-    /// Whether the lane's normals are those of a mesh without any, and so its texture coordinates.
+    /// Whether the lane's normals are those of a mesh without any.
     has_no_normals: [bool; LANES],
-    has_no_uvs: [bool; LANES],
 }
 
 /// What they give: see [`SurfaceInteraction`].
@@ -44,34 +82,57 @@ pub struct Surfaces {
     pub ns: Vec3Lanes,
     /// From the origins of the rays.
     pub distance: Lanes,
-    dpdu: Vec3Lanes,
-    dpdv: Vec3Lanes,
-    uv: Vec2Lanes,
     barycentrics: Vec2Lanes,
 }
 
-impl SurfaceLanes {
+/// See [`Parametrization`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Parametrizations {
+    dpdu: Vec3Lanes,
+    dpdv: Vec3Lanes,
+    uv: Vec2Lanes,
+}
+
+impl<'a> SurfaceLanes<'a> {
+    /// Two of what rays hit in `world`.
+    pub fn two(world: &'a World) -> [Self; 2] {
+        let meshes = world.geometries().iter().map(|geometry| Mesh::of(&geometry.shape));
+        let one = Self {
+            meshes: meshes.collect(),
+            ..Self::default()
+        };
+        [one.clone(), one]
+    }
+
+    /// Collects what there is to know of the triangles that rays hit, for [`Self::compute`]: better some time before, as what is stored
+    /// lane by lane is waited for if it is read at once.
+    #[inline]
+    pub fn gather(&mut self, rays: &RayPacket, hits: &HitPacket) {
+        self.parametrizations.take();
+        for lane in 0..LANES {
+            let triangle = triangle_hit(&self.meshes, hits, lane);
+            self.is_triangle[lane] = triangle.is_some();
+            if let Some((mesh, corners)) = triangle {
+                self.triangles.set(lane, mesh, corners);
+                if let Some(moving) = mesh.moving {
+                    let vertices = moving.triangle(hits.primitive[lane] as usize, rays.time[lane]);
+                    set_all(&mut self.triangles.vertices, lane, [0, 1, 2], &vertices);
+                }
+            }
+        }
+    }
+
     /// Computes what the rays that take part hit; `other` says it, for a ray, its hit and the distance there, of what is not a triangle in
     /// world space.
     #[inline]
-    pub fn fill(
+    pub fn compute(
         &mut self,
-        world: &World,
         rays: &RayPacket,
         hits: &HitPacket,
         other: impl Fn(&Ray, Hit, f32) -> SurfaceInteraction,
     ) {
-        let mut has_others = false;
-        for lane in 0..LANES {
-            let hit = hits.get(lane);
-            let on_mesh = hit.and_then(|hit| world_mesh(world, hit));
-            self.is_triangle[lane] = on_mesh.is_some();
-            has_others |= hit.is_some() & on_mesh.is_none();
-            if let Some((mesh, triangle)) = on_mesh {
-                self.triangles.set(lane, mesh, triangle, rays.time[lane]);
-            }
-        }
-        if self.is_triangle != [false; LANES] {
+        let on_triangles = LaneSet::from(self.is_triangle);
+        if !on_triangles.is_empty() {
             let triangles = &self.triangles;
             let surfaces = &mut self.surfaces;
             self.vectorizer.run(Compute {
@@ -80,7 +141,7 @@ impl SurfaceLanes {
                 surfaces,
             });
         }
-        if has_others {
+        if !hits.hit_lanes().without(on_triangles).is_empty() {
             self.fill_others(rays, hits, other);
         }
     }
@@ -107,37 +168,53 @@ impl SurfaceLanes {
         &self.surfaces
     }
 
-    /// What `ray`, which was in `lane`, `hit`.
+    /// Where the ray in `lane` has this `hit`, one of the `hits` of `rays` that this was filled with.
     #[inline]
-    pub fn get(&self, lane: usize, ray: &Ray, hit: Hit) -> SurfaceInteraction {
+    pub fn get(&self, lane: usize, hit: Hit, rays: &RayPacket, hits: &HitPacket) -> SurfaceInteraction {
         if let (false, Some(surface)) = (self.is_triangle[lane], &self.others[lane]) {
             return *surface;
         }
         let surfaces = &self.surfaces;
+        let Parametrizations { dpdu, dpdv, uv } = self.parametrizations.get_or_init(|| self.parametrize(hits));
         SurfaceInteraction {
             p: surfaces.p.get(lane),
             error: surfaces.error[lane],
             ng: surfaces.ng.get(lane),
             ns: surfaces.ns.get(lane),
-            dpdu: surfaces.dpdu.get(lane),
-            dpdv: surfaces.dpdv.get(lane),
-            uv: surfaces.uv.get(lane),
+            dpdu: dpdu.get(lane),
+            dpdv: dpdv.get(lane),
+            uv: uv.get(lane),
             barycentrics: surfaces.barycentrics.get(lane),
-            wo: -ray.direction,
+            wo: -rays.direction(lane),
             footprint: 0.0,
-            time: ray.time,
+            time: rays.time[lane],
             hit,
         }
     }
+
+    fn parametrize(&self, hits: &HitPacket) -> Parametrizations {
+        let mut uvs = [[Vec2::ZERO; LANES]; 3];
+        for lane in 0..LANES {
+            match triangle_hit(&self.meshes, hits, lane) {
+                Some((mesh, corners)) if !mesh.uvs.is_empty() => set_all(&mut uvs, lane, corners, mesh.uvs),
+                _ => set_all(&mut uvs, lane, [0, 1, 2], &PLAIN_UVS),
+            }
+        }
+        self.vectorizer.run(Parametrize {
+            uvs: &uvs,
+            vertices: &self.triangles.vertices,
+            barycentrics: &self.surfaces.barycentrics,
+        })
+    }
 }
 
-/// The mesh and the triangle that were hit, if the mesh is in world space.
+/// The mesh in world space, if it is one, that a lane hit, and the corners of the triangle.
 #[inline]
-fn world_mesh(world: &World, hit: Hit) -> Option<(&TriangleMesh, usize)> {
-    match &world.geometry(hit.geometry).shape {
-        Shape::Mesh(mesh) if hit.instance.is_none() => Some((mesh, hit.primitive.index())),
-        _ => None,
-    }
+fn triangle_hit<'a, 'm>(meshes: &'m [Mesh<'a>], hits: &HitPacket, lane: usize) -> Option<(&'m Mesh<'a>, [u32; 3])> {
+    // What is not hit is beyond all geometries.
+    let mesh = meshes.get(hits.geometry[lane] as usize)?;
+    let corners = mesh.indices.get(hits.primitive[lane] as usize)?;
+    (hits.instance[lane] == HitPacket::NONE).then_some((mesh, *corners))
 }
 
 impl Surfaces {
@@ -151,28 +228,22 @@ impl Surfaces {
 }
 
 impl Triangles {
-    #[inline]
-    fn set(&mut self, lane: usize, mesh: &TriangleMesh, triangle: usize, time: f32) {
-        let corners = mesh.indices()[triangle];
-        if mesh.is_moving() {
-            set_all(&mut self.vertices, lane, [0, 1, 2], &mesh.triangle(triangle, time));
+    #[inline(always)]
+    fn set(&mut self, lane: usize, mesh: &Mesh<'_>, corners: [u32; 3]) {
+        self.side[lane] = mesh.side;
+        self.has_no_normals[lane] = if mesh.normals.is_empty() {
+            set_all(&mut self.vertices, lane, corners, mesh.positions);
+            // They are mostly in their lane already.
+            if !self.has_no_normals[lane] {
+                set_all(&mut self.normals, lane, [0, 1, 2], &NO_NORMALS);
+            }
+            true
         } else {
-            set_all(&mut self.vertices, lane, corners, mesh.padded_positions(0));
-        }
-        // What a mesh does not have is mostly in its lane already.
-        match mesh.normals() {
-            Some(normals) => set_all(&mut self.normals, lane, corners, normals),
-            None if self.has_no_normals[lane] => {}
-            None => set_all(&mut self.normals, lane, [0, 1, 2], &NO_NORMALS),
-        }
-        self.has_no_normals[lane] = mesh.normals().is_none();
-        match mesh.uvs() {
-            Some(uvs) => set_all(&mut self.uvs, lane, corners, uvs),
-            None if self.has_no_uvs[lane] => {}
-            None => set_all(&mut self.uvs, lane, [0, 1, 2], &PLAIN_UVS),
-        }
-        self.has_no_uvs[lane] = mesh.uvs().is_none();
-        self.side[lane] = mesh.side();
+            // Corners that have positions then have normals, as the compiler sees.
+            set_all(&mut self.vertices, lane, corners, &mesh.positions[..mesh.normals.len()]);
+            set_all(&mut self.normals, lane, corners, mesh.normals);
+            false
+        };
     }
 }
 
@@ -184,7 +255,7 @@ fn set_all<T: Copy>(lanes: &mut [[T; LANES]; 3], lane: usize, corners: [u32; 3],
     }
 }
 
-/// See [`SurfaceLanes::fill`].
+/// See [`SurfaceLanes::compute`].
 struct Compute<'a> {
     rays: &'a RayPacket,
     triangles: &'a Triangles,
@@ -198,38 +269,55 @@ impl Kernel for Compute<'_> {
     #[inline(always)]
     fn call(self) {
         let Self { rays, triangles, .. } = self;
-        let Triangles {
-            vertices, normals, uvs, ..
-        } = triangles;
+        let Triangles { vertices, normals, .. } = triangles;
         let mut surfaces = Surfaces::default();
         for i in 0..LANES {
             let vertices = [vertices[0][i], vertices[1][i], vertices[2][i]];
-            let corners = Corners {
-                normals: [normals[0][i], normals[1][i], normals[2][i]],
-                uvs: [uvs[0][i], uvs[1][i], uvs[2][i]],
-                side: triangles.side[i],
-            };
+            let normals = [normals[0][i], normals[1][i], normals[2][i]];
             let point = triangle::point(&vertices, rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
             let (barycentrics, ng) = point.in_single_precision();
-            let attributes = corners.at(&vertices, ng, barycentrics);
-            let ng = ng * attributes.side;
-            let has_ns = (attributes.ns.x != 0.0) | (attributes.ns.y != 0.0) | (attributes.ns.z != 0.0);
+            let Facing { side, ns: given } = Facing::at(&normals, triangles.side[i], ng, barycentrics);
+            let ng = ng * side;
+            let has_ns = (given.x != 0.0) | (given.y != 0.0) | (given.z != 0.0);
             let p = point.p.as_vec3();
             surfaces.p.set(i, p);
             surfaces.distance[i] = p.distance(rays.origin(i));
             surfaces.error[i] = (point.error + rounding_error(point.p, ng)) as f32;
             surfaces.ng.set(i, ng);
-            surfaces.dpdu.set(i, attributes.dpdu);
-            surfaces.dpdv.set(i, attributes.dpdv);
             let ns = |given: f32, ng: f32| if has_ns { given } else { ng };
-            let given = attributes.ns;
             surfaces
                 .ns
                 .set(i, Vec3::new(ns(given.x, ng.x), ns(given.y, ng.y), ns(given.z, ng.z)));
-            surfaces.uv.set(i, attributes.uv);
             surfaces.barycentrics.set(i, barycentrics.into());
         }
         *self.surfaces = surfaces;
+    }
+}
+
+/// See [`SurfaceLanes::parametrize`].
+struct Parametrize<'a> {
+    uvs: &'a [[Vec2; LANES]; 3],
+    vertices: &'a [[Vec3; LANES]; 3],
+    barycentrics: &'a Vec2Lanes,
+}
+
+impl Kernel for Parametrize<'_> {
+    type Output = Parametrizations;
+
+    #[inline(always)]
+    fn call(self) -> Parametrizations {
+        let Self { uvs, vertices, .. } = self;
+        let mut lanes = Parametrizations::default();
+        for i in 0..LANES {
+            let vertices = [vertices[0][i], vertices[1][i], vertices[2][i]];
+            let uvs = [uvs[0][i], uvs[1][i], uvs[2][i]];
+            let Parametrization { dpdu, dpdv, uv } =
+                Parametrization::at(&uvs, &vertices, self.barycentrics.get(i).into());
+            lanes.dpdu.set(i, dpdu);
+            lanes.dpdv.set(i, dpdv);
+            lanes.uv.set(i, uv);
+        }
+        lanes
     }
 }
 
@@ -293,7 +381,7 @@ mod tests {
     #[test]
     fn lanes_are_the_surfaces_of_single_rays() {
         let world = world();
-        let mut lanes = SurfaceLanes::default();
+        let [mut lanes, _] = SurfaceLanes::two(&world);
         for round in 0..20 {
             let (mut rays, mut hits) = (RayPacket::EMPTY, HitPacket::EMPTY);
             for lane in 0..LANES - 1 {
@@ -309,10 +397,11 @@ mod tests {
                     (hits.geometry[lane], hits.instance[lane]) = (1, 0);
                 }
             }
-            lanes.fill(&world, &rays, &hits, |ray, hit, _| world.interaction(ray, hit));
+            lanes.gather(&rays, &hits);
+            lanes.compute(&rays, &hits, |ray, hit, _| world.interaction(ray, hit));
             for lane in 0..LANES - 1 {
                 let (ray, hit) = (rays.get(lane), hits.get(lane).unwrap());
-                let (together, alone) = (lanes.get(lane, &ray, hit), world.interaction(&ray, hit));
+                let (together, alone) = (lanes.get(lane, hit, &rays, &hits), world.interaction(&ray, hit));
                 assert_eq!(format!("{together:?}"), format!("{alone:?}"));
                 assert_eq!(
                     together.hit,

@@ -15,14 +15,14 @@ pub const LEAST_ERROR: f64 = 1.0 / (1_u64 << 36) as f64;
 /// is left, as the sum then has one term and the rest is exact.
 pub fn triangle_error(vertices: &[DVec3; 3]) -> f64 {
     let [a, b, c] = *vertices;
-    plane_error(vertices, (b - a).cross(c - a).length().recip())
+    let axis = |a, b, c| larger_of(larger_of(a, b), c) - smaller_of(smaller_of(a, b), c);
+    let extent = DVec3::new(axis(a.x, b.x, c.x), axis(a.y, b.y, c.y), axis(a.z, b.z, c.z));
+    plane_error(extent, (b - a).cross(c - a).length().recip())
 }
 
-/// [`triangle_error`] of a triangle, given the reciprocal of the length of the cross product of two edges.
+/// [`triangle_error`] of a triangle of this extent, given the reciprocal of the length of the cross product of two edges.
 #[inline(always)]
-fn plane_error(vertices: &[DVec3; 3], inverse_area: f64) -> f64 {
-    let [a, b, c] = *vertices;
-    let extent = larger(larger(a, b), c) - smaller(smaller(a, b), c);
+fn plane_error(extent: DVec3, inverse_area: f64) -> f64 {
     let size = larger_of(larger_of(extent.x, extent.y), extent.z);
     let volume = extent.x * extent.y * extent.z;
     let plane = f64::from(gamma(32)) * volume * inverse_area;
@@ -33,23 +33,21 @@ fn plane_error(vertices: &[DVec3; 3], inverse_area: f64) -> f64 {
 
 // One instruction each, where the functions of the standard library take care of NaN.
 #[inline(always)]
-fn larger_of(a: f64, b: f64) -> f64 {
+fn larger_of<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
 #[inline(always)]
-fn smaller_of(a: f64, b: f64) -> f64 {
+fn smaller_of<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
+/// The extent of a triangle: the difference is in double precision, but not what is chosen.
 #[inline(always)]
-fn larger(a: DVec3, b: DVec3) -> DVec3 {
-    DVec3::new(larger_of(a.x, b.x), larger_of(a.y, b.y), larger_of(a.z, b.z))
-}
-
-#[inline(always)]
-fn smaller(a: DVec3, b: DVec3) -> DVec3 {
-    DVec3::new(smaller_of(a.x, b.x), smaller_of(a.y, b.y), smaller_of(a.z, b.z))
+fn extent([a, b, c]: &[Vec3; 3]) -> DVec3 {
+    let axis =
+        |a: f32, b: f32, c: f32| f64::from(larger_of(larger_of(a, b), c)) - f64::from(smaller_of(smaller_of(a, b), c));
+    DVec3::new(axis(a.x, b.x, c.x), axis(a.y, b.y, c.y), axis(a.z, b.z, c.z))
 }
 
 /// A point of a triangle, in the space of its vertices.
@@ -69,6 +67,7 @@ pub(super) struct TrianglePoint {
 /// (Moeller and Trumbore 1997). Without branches, so that it is vectorised over lanes.
 #[inline(always)]
 pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> TrianglePoint {
+    let extent = extent(vertices);
     let vertices = vertices.map(Vec3::as_dvec3);
     let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
     let cross = e1.cross(e2);
@@ -84,7 +83,7 @@ pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> Tr
     let w = if is_finite { w * scale } else { 1.0 / 3.0 };
     TrianglePoint {
         p: vertices[0] + e1 * v + e2 * w,
-        error: plane_error(&vertices, inverse_area),
+        error: plane_error(extent, inverse_area),
         ng: cross * inverse_area,
         barycentrics: [v, w],
     }
@@ -115,36 +114,51 @@ pub(super) struct Corners {
     pub side: f32,
 }
 
-/// What a mesh says about a point of a triangle.
+/// Which way a mesh's surface faces at a point of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Attributes {
+pub(super) struct Facing {
     /// 1 if the geometric normal is on the side from which the vertices run anticlockwise, -1 if on the other.
     pub side: f32,
     /// Interpolated shading normal, unit length; zero without normals, or where they cancel.
     pub ns: Vec3,
+}
+
+/// How texture coordinates lie on a mesh at a point of a triangle: see [`SurfaceInteraction`](super::SurfaceInteraction).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parametrization {
     pub dpdu: Vec3,
     pub dpdv: Vec3,
     pub uv: Vec2,
 }
 
-impl Corners {
-    /// At the point with the barycentrics `v` and `w` of the second and the third corner, where the anticlockwise normal is `ng`.
-    /// Without branches, as [`point`] is.
+impl Facing {
+    /// At the point with the barycentrics `v` and `w` of the second and the third corner, where the anticlockwise normal is `ng`, with
+    /// `normals` and `side` as [`Corners`] has them. Without branches, as [`point`] is.
     #[inline(always)]
-    pub fn at(&self, vertices: &[Vec3; 3], ng: Vec3, [v, w]: [f32; 2]) -> Attributes {
+    pub fn at(normals: &[Vec3; 3], side: f32, ng: Vec3, [v, w]: [f32; 2]) -> Self {
         let u = 1.0 - v - w;
-        let [a, b, c] = self.normals;
+        let [a, b, c] = *normals;
         // With normals given they say which side is out, as in pbrt.
         let cos = ng.dot(a + b + c);
         let mean = a * u + b * v + c * w;
         let inverse_length = 1.0 / mean.length();
         let has_direction = (inverse_length > 0.0) & (inverse_length < f32::INFINITY);
-        let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
-        let [p, q, r] = self.uvs;
-        let [dpdu, dpdv] = derivatives(e1, e2, q - p, r - p);
-        Attributes {
-            side: if cos == 0.0 { self.side } else { 1.0_f32.copysign(cos) },
+        Self {
+            side: if cos == 0.0 { side } else { 1.0_f32.copysign(cos) },
             ns: mean * if has_direction { inverse_length } else { 0.0 },
+        }
+    }
+}
+
+impl Parametrization {
+    /// At the same point, with `uvs` as [`Corners`] has them. Without branches.
+    #[inline(always)]
+    pub fn at(uvs: &[Vec2; 3], vertices: &[Vec3; 3], [v, w]: [f32; 2]) -> Self {
+        let u = 1.0 - v - w;
+        let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
+        let [p, q, r] = *uvs;
+        let [dpdu, dpdv] = derivatives(e1, e2, q - p, r - p);
+        Self {
             dpdu,
             dpdv,
             uv: p * u + q * v + r * w,

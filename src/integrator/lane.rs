@@ -3,6 +3,7 @@
 //! Lanes lie side by side in packets of eight, column by column: what takes them together reads and writes columns, what takes them one by one
 //! asks a packet for a [`Lane`].
 
+use super::DroppedSample;
 use super::queue::{Packet, Queue};
 use crate::accel::RayKind;
 use crate::geometry::RayCone;
@@ -34,9 +35,20 @@ pub(super) struct Slot {
 
 impl Slot {
     /// Whether what it gathered counts: it is finite and nowhere negative.
-    #[inline]
+    #[inline(always)]
     pub fn is_good(&self) -> bool {
-        !self.broken && self.l.is_finite() && self.l.min_value() >= 0.0
+        // Comparisons are false of NaN. Without branches, for kernels.
+        let is_good = |l: f32| (l >= 0.0) & l.is_finite();
+        let [a, b, c, d] = self.l.0.map(is_good);
+        !self.broken & a & b & c & d
+    }
+
+    /// It, as one that was dropped.
+    pub fn dropped(&self) -> DroppedSample {
+        DroppedSample {
+            pixel: self.pixel,
+            sample: self.sample,
+        }
     }
 }
 

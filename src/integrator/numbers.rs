@@ -105,59 +105,50 @@ impl<'a> EventLanes<'a> {
         EventNumbers::new(of(light), of(bsdf))
     }
 
-    fn all(&self) -> &[[Lanes; 4]; 2] {
+    /// Those of all of the paths.
+    pub fn all(&self) -> &[[Lanes; 4]; 2] {
         self.all
             .get_or_init(|| self.streams.draw::<0b1111, 0b1111>(self.vectorizer, self.group))
     }
 
-    /// Those of surfaces that have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
-    /// `has_others` says whether other surfaces are likely to ask for all of them.
+    /// Those that surfaces ask for that have but one lobe, of all paths: which light and Russian roulette only where there is a choice.
     #[inline(always)]
-    pub fn of_one_lobe(&self, chooses_light: bool, may_end: bool, has_others: bool) -> OneLobeLanes {
-        if has_others {
-            return OneLobeLanes(*self.all());
-        }
+    pub fn of_one_lobe(&self, chooses_light: bool, may_end: bool) -> [[Lanes; 4]; 2] {
         let Self {
             vectorizer,
             streams,
             group,
             ..
         } = *self;
-        OneLobeLanes(match (chooses_light, may_end) {
+        match (chooses_light, may_end) {
             (false, false) => streams.draw::<0b0011, 0b0011>(vectorizer, group),
             (false, true) => streams.draw::<0b1011, 0b0011>(vectorizer, group),
             (true, _) => streams.draw::<0b1111, 0b0011>(vectorizer, group),
-        })
+        }
     }
 }
 
-/// What surfaces with one lobe need of [`EventNumbers`], of eight paths.
-pub(super) struct OneLobeLanes([[Lanes; 4]; 2]);
-
-impl OneLobeLanes {
-    /// The two for points of lights.
-    #[inline(always)]
-    pub fn light(&self) -> [&Lanes; 2] {
-        let [[x, y, ..], _] = &self.0;
-        [x, y]
-    }
-
+/// What surfaces with one lobe need of [`EventNumbers`], of eight paths, where they were drawn: copies would be waited for.
+pub(super) struct OneLobeLanes<'a> {
+    /// See [`EventNumbers::light`].
+    pub light: [&'a Lanes; 2],
     /// See [`EventNumbers::which_light`].
-    #[inline(always)]
-    pub fn which_light(&self) -> &Lanes {
-        &self.0[0][2]
-    }
-
+    pub which_light: &'a Lanes,
     /// See [`EventNumbers::roulette`].
-    #[inline(always)]
-    pub fn roulette(&self) -> &Lanes {
-        &self.0[0][3]
-    }
+    pub roulette: &'a Lanes,
+    /// See [`EventNumbers::bsdf`].
+    pub bsdf: [&'a Lanes; 2],
+}
 
-    /// The two for directions.
+impl<'a> OneLobeLanes<'a> {
+    /// Those among the numbers of [`EventLanes::all`] or of [`EventLanes::of_one_lobe`].
     #[inline(always)]
-    pub fn bsdf(&self) -> [&Lanes; 2] {
-        let [_, [x, y, ..]] = &self.0;
-        [x, y]
+    pub fn of([light, bsdf]: &'a [[Lanes; 4]; 2]) -> Self {
+        Self {
+            light: [&light[0], &light[1]],
+            which_light: &light[2],
+            roulette: &light[3],
+            bsdf: [&bsdf[0], &bsdf[1]],
+        }
     }
 }

@@ -67,16 +67,15 @@ impl<P: Packet> Queue<P> {
         self.rays.push(ray);
     }
 
-    /// Adds a packet of rays, of which some may take no part, and one of what belongs to them. All lanes that are held so far are whole packets.
-    pub fn push_packet(&mut self, rays: &RayPacket, values: &P) {
-        debug_assert!(self.rays.len().is_multiple_of(LANES));
+    /// Adds a packet of rays, of which some may take no part, and one of what belongs to them, for the caller to write: they are what happens
+    /// to be there, or `any`. All lanes that are held so far are whole packets.
+    #[inline]
+    pub fn push_any_packet(&mut self, any: impl FnOnce() -> P) -> (&mut RayPacket, &mut P) {
         let packet = self.rays.len() / LANES;
         if packet == self.packets.len() {
-            self.packets.push(*values);
-        } else {
-            self.packets[packet] = *values;
+            self.packets.push(any());
         }
-        self.rays.push_packet(rays);
+        (self.rays.push_any_packet(), &mut self.packets[packet])
     }
 
     /// Adds `chosen` lanes of `rays`, which must be valid, and of `values`. The queue grows by `any` packet.

@@ -148,7 +148,7 @@ pub(super) struct PacketVertices<'a, S: LaneState> {
     /// What they hit.
     pub hits: &'a HitPacket,
     /// The surfaces there.
-    pub surfaces: &'a SurfaceLanes,
+    pub surfaces: &'a SurfaceLanes<'a>,
     /// Random numbers for the scattering events there.
     pub numbers: &'a EventLanes<'a>,
 }
@@ -159,7 +159,7 @@ impl<S: LaneState> PacketVertices<'_, S> {
     pub fn surface(&self, lane: usize, hit: Hit) -> SurfaceInteraction {
         SurfaceInteraction {
             footprint: self.cone(lane).width,
-            ..self.surfaces.get(lane, &self.rays.get(lane), hit)
+            ..self.surfaces.get(lane, hit, self.rays, self.hits)
         }
     }
 

@@ -10,6 +10,15 @@ impl LaneSet {
     /// None of them.
     pub const NONE: Self = Self(0);
 
+    /// All of them.
+    pub const ALL: Self = Self(u8::MAX);
+
+    /// One of them.
+    #[inline]
+    pub fn of(lane: usize) -> Self {
+        Self(1 << lane)
+    }
+
     /// How many.
     #[inline]
     pub fn len(self) -> u32 {
@@ -41,6 +50,12 @@ impl LaneSet {
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// Whether a lane is in it.
+    #[inline(always)]
+    pub fn has(self, lane: usize) -> bool {
+        self.0 >> lane & 1 == 1
     }
 
     /// Its place among all sets: bit i is set for lane i.

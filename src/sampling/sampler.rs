@@ -70,23 +70,49 @@ impl Sampler {
     #[inline]
     pub fn start(&self, x: i32, y: i32, sample_index: u32) -> SampleStream {
         debug_assert!(sample_index < self.samples_per_pixel);
-        let (plan, place, [x, y]) = match self.kind {
-            SamplerKind::Independent => (Plan::Independent, 0, [x, y]),
-            SamplerKind::Stratified(strata) => (Plan::Stratified(strata), 0, [x, y]),
-            SamplerKind::Halton => (Plan::Halton(self.samples_per_pixel), 0, [x, y]),
-            SamplerKind::Sobol => (Plan::Sobol, 0, [x, y]),
-            SamplerKind::ZSobol => {
-                let (order, tile) = Order::new(self.samples_per_pixel, x, y);
-                (Plan::ZSobol(order.log2_samples), order.place, tile)
-            }
-        };
-        let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
+        let (key, place) = self.key_and_place(x, y);
         SampleStream {
-            key: combine(mix64(self.seed ^ GOLDEN), pixel),
+            key,
             reversed_index: sample_index.reverse_bits(),
             place,
-            plan,
+            plan: self.plan(),
         }
+    }
+
+    /// Of all its streams.
+    #[inline(always)]
+    pub(super) fn plan(&self) -> Plan {
+        match self.kind {
+            SamplerKind::Independent => Plan::Independent,
+            SamplerKind::Stratified(strata) => Plan::Stratified(strata),
+            SamplerKind::Halton => Plan::Halton(self.samples_per_pixel),
+            SamplerKind::Sobol => Plan::Sobol,
+            SamplerKind::ZSobol => Plan::ZSobol(Order::new(self.samples_per_pixel, 0, 0).0.log2_samples),
+        }
+    }
+
+    /// See [`SampleStream`].
+    #[inline(always)]
+    pub(super) fn key_and_place(&self, x: i32, y: i32) -> (u64, u16) {
+        let (place, [x, y]) = if self.kind == SamplerKind::ZSobol {
+            let (order, tile) = Order::new(self.samples_per_pixel, x, y);
+            (order.place, tile)
+        } else {
+            (0, [x, y])
+        };
+        let pixel = u64::from(x.cast_unsigned()) << 32 | u64::from(y.cast_unsigned());
+        (combine(mix64(self.seed ^ GOLDEN), pixel), place)
+    }
+
+    /// It, or another with the same keys and places, such that the compiler knows which way these go.
+    #[inline(always)]
+    pub(super) fn with_known_keys(&self, is_zsobol: bool) -> Self {
+        let kind = if is_zsobol {
+            SamplerKind::ZSobol
+        } else {
+            SamplerKind::Sobol
+        };
+        Self { kind, ..*self }
     }
 }
 
@@ -287,6 +313,19 @@ mod tests {
                     let [x, _, _, w] = stream.draw4(group + 1);
                     assert_eq!(some.map(|numbers| numbers[i]), [x, 0.0, 0.0, w], "{kind:?}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn streams_of_eight_pixels_are_those_of_each() {
+        for kind in KINDS {
+            let sampler = Sampler::new(kind, 5, 48);
+            let pixel = |i: usize| [250 + 3 * i as u32, 1000 - i as u32];
+            let lanes = StreamLanes::start(Vectorizer::default(), &sampler, pixel, 37);
+            for i in 0..LANES {
+                let [x, y] = pixel(i).map(u32::cast_signed);
+                assert_eq!(lanes.get(i), sampler.start(x, y, 37), "{kind:?}");
             }
         }
     }

@@ -114,10 +114,19 @@ impl Scene {
         }
     }
 
-    /// [`Scene::interaction`] of the rays of a packet that hit something.
+    /// [`Scene::interaction`] of the rays that hit something: of the first packets of `packets`, as many as there are of `surfaces`.
     #[inline]
-    pub fn interactions(&self, surfaces: &mut SurfaceLanes, rays: &RayPacket, hits: &HitPacket) {
-        surfaces.fill(&self.world, rays, hits, |ray, hit, t| self.interaction(ray, hit, t));
+    pub fn interactions<'p>(
+        &self,
+        surfaces: &mut [SurfaceLanes<'_>],
+        packets: impl Iterator<Item = (&'p RayPacket, &'p HitPacket)> + Clone,
+    ) {
+        for (surfaces, (rays, hits)) in surfaces.iter_mut().zip(packets.clone()) {
+            surfaces.gather(rays, hits);
+        }
+        for (surfaces, (rays, hits)) in surfaces.iter_mut().zip(packets) {
+            surfaces.compute(rays, hits, |ray, hit, t| self.interaction(ray, hit, t));
+        }
     }
 }
 

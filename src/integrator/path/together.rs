@@ -43,7 +43,22 @@ struct Paths {
 #[derive(Clone, Copy, Debug)]
 struct Taken([LaneSet; Kind::COUNT]);
 
+impl Default for Taken {
+    fn default() -> Self {
+        Self([LaneSet::NONE; Kind::COUNT])
+    }
+}
+
 impl Taken {
+    #[inline(always)]
+    fn add(&mut self, kind: Kind, lanes: LaneSet) {
+        // In registers: a set that is stored at a place which is not known beforehand is waited for.
+        for (i, taken) in self.0.iter_mut().enumerate() {
+            let more = if i == kind as usize { lanes } else { LaneSet::NONE };
+            *taken = taken.or(more);
+        }
+    }
+
     #[inline]
     fn of(self, kind: Kind) -> LaneSet {
         self.0[kind as usize]
@@ -87,7 +102,14 @@ impl PathIntegrator {
         let only_light = scene.light_sampler().only();
         let may_end = stage.depth >= FIRST_ROULETTE_DEPTH;
         let has_others = !hit.without(all).is_empty();
-        let numbers = &packet.numbers.of_one_lobe(only_light.is_none(), may_end, has_others);
+        let drawn;
+        let numbers = &OneLobeLanes::of(if has_others {
+            // They are likely to ask for all numbers.
+            packet.numbers.all()
+        } else {
+            drawn = packet.numbers.of_one_lobe(only_light.is_none(), may_end);
+            &drawn
+        });
         let looking = all.without(taken.of(Kind::Mirror));
         if !looking.is_empty() {
             paths.sample_lights(lights, scene, stage.slots, packet, looking, numbers);
@@ -105,7 +127,7 @@ impl PathIntegrator {
         &self,
         stage: &mut PathStage<'_, '_>,
         packet: &PacketVertices<'_, Origin>,
-        numbers: &OneLobeLanes,
+        numbers: &OneLobeLanes<'_>,
         chosen: LaneSet,
     ) {
         if chosen.is_empty() {
@@ -153,17 +175,22 @@ impl Paths {
         packet: &PacketVertices<'_, Origin>,
         hit: LaneSet,
     ) -> Taken {
-        let mut taken = [[false; LANES]; Kind::COUNT];
-        for i in hit.lanes() {
-            let kind = match scene.known_albedo(packet.hits.geometry[i]) {
-                Some(albedo) => Some(self.kinds.set_lambertian(i, albedo)),
-                None => self.look_up(direct_light, scene, slots, packet, i),
-            };
-            if let Some(kind) = kind {
-                taken[kind as usize][i] = true;
+        let mut taken = Taken::default();
+        let mut known = LaneSet::NONE;
+        for i in 0..LANES {
+            if let Some(albedo) = scene.known_albedo(packet.hits.geometry[i]) {
+                self.kinds.set_lambertian(i, albedo);
+                known = known.or(LaneSet::of(i));
             }
         }
-        Taken(taken.map(LaneSet::from))
+        let known = known.and(hit);
+        taken.add(Kind::Lambertian, known);
+        for i in hit.without(known).lanes() {
+            if let Some(kind) = self.look_up(direct_light, scene, slots, packet, i) {
+                taken.add(kind, LaneSet::of(i));
+            }
+        }
+        taken
     }
 
     /// The same of one path, at a surface of which nothing is known beforehand.
@@ -198,11 +225,11 @@ impl Paths {
         slots: &[Slot],
         packet: &PacketVertices<'_, Origin>,
         looking: LaneSet,
-        numbers: &OneLobeLanes,
+        numbers: &OneLobeLanes<'_>,
     ) {
         let surfaces = packet.surfaces.all();
         if let Some(SampledLight { light, pmf }) = scene.light_sampler().only()
-            && lights.sample_one(light, scene.light(light), &surfaces.p, numbers.light())
+            && lights.sample_one(light, scene.light(light), &surfaces.p, numbers.light)
         {
             self.pmf = [pmf; LANES];
             return;
@@ -210,11 +237,11 @@ impl Paths {
         let mut chosen: [Option<ChosenLight<'_>>; LANES] = [None; LANES];
         for i in looking.lanes() {
             let (p, n) = (surfaces.p.get(i), surfaces.ns.get(i));
-            let light = scene.light_sampler().sample(p, n, numbers.which_light()[i]);
+            let light = scene.light_sampler().sample(p, n, numbers.which_light[i]);
             self.pmf[i] = light.map_or(1.0, |light| light.pmf);
             let lambda = &slots[packet.lanes.slot[i] as usize].lambda;
             chosen[i] = light.map(|light| (light.light, scene.light(light.light), lambda));
         }
-        lights.sample(&chosen, &surfaces.p, &packet.rays.time, numbers.light());
+        lights.sample(&chosen, &surfaces.p, &packet.rays.time, numbers.light);
     }
 }

@@ -8,18 +8,18 @@ use std::ops::Range;
 
 use super::Wave;
 use crate::accel::RayKind;
-use crate::camera::{CameraLanes, CameraSample};
-use crate::film::{FilterLanes, PixelRect, TILE_SIZE};
+use crate::camera::{CameraSample, CameraSampleLanes};
+use crate::film::{PixelRect, TILE_SIZE};
 use crate::geometry::{LANES, Ray, RayCone, RayPacket};
 use crate::integrator::lane::{Batch, Lane, LanePacket, NO_SLOT, Slot};
 use crate::integrator::numbers::{DETECTOR_GROUP, FILM_GROUP};
 use crate::integrator::queue::Packet;
 use crate::integrator::stage::{Estimator, Moment};
 use crate::material::TransportMode;
-use crate::math::{Lanes, Vec2, Vec2Lanes, VectorLanes, Vectorizer};
+use crate::math::{LaneSet, Lanes, Vec2, VectorLanes, Vectorizer};
 use crate::sampling::StreamLanes;
 use crate::scene::View;
-use crate::spectrum::SampledSpectrum;
+use crate::spectrum::{ColorMode, SampledSpectrum, SpectrumLanes};
 
 /// Columns and rows of the block of pixels whose camera rays share a packet.
 const BLOCK: [u32; 2] = [4, 2];
@@ -58,72 +58,97 @@ impl<E: Estimator> Wave<'_, E> {
     }
 
     fn generate_block(&mut self, batch: &mut Batch<E::State>, pixels: &Pixels, corner: [u32; 2], sample: u32) {
-        let Pixels { wanted, traced, light } = *pixels;
-        let pixels: [[u32; 2]; LANES] =
-            std::array::from_fn(|i| [corner[0] + i as u32 % BLOCK[0], corner[1] + i as u32 / BLOCK[0]]);
-        let sampler = &self.view.sampler;
-        let start = |[x, y]: [u32; 2]| sampler.start(x.cast_signed(), y.cast_signed(), sample);
-        let mut streams = StreamLanes::all(start(corner));
-        for (i, &pixel) in pixels.iter().enumerate() {
-            streams.set(i, start(pixel));
-        }
-        const { assert!(DETECTOR_GROUP == FILM_GROUP + 1) };
-        let [film, detector] = streams.draw::<0b1111, 0b0011>(self.vectorizer, FILM_GROUP);
-        let starts = Starts::new(self.view, self.vectorizer, &pixels, &film);
-        let shared_moment = self.estimator.moment();
-        let mut rays = RayPacket::EMPTY;
-        let mut lanes = LanePacket::all(Lane {
-            slot: NO_SLOT,
-            split: false,
-            stream: streams.get(0),
-            beta: SampledSpectrum::ONE,
-            eta_scale: 1.0,
-            cone: RayCone::default(),
-            state: self.estimator.camera_state(self.view, &Ray::INACTIVE),
+        let (view, vectorizer, estimator) = (self.view, self.vectorizer, self.estimator);
+        let pixel = move |i| pixel_of_block(corner, i);
+        let Block { traced, wanted, slots } = pixels.of_block(pixel, self.whole_tiles);
+        let streams = StreamLanes::start(vectorizer, &view.sampler, pixel, sample);
+        let (shared_moment, color) = (estimator.moment(), self.scene.color());
+        let [film, detector] = draw(&streams, vectorizer, view, color, shared_moment);
+        let filters = view.filter.sample_lanes(vectorizer, pixel, [&film[0], &film[1]]);
+        let [wavelengths, times] = shared_moment.map_or([detector[0], detector[1]], |moment| {
+            [[moment.wavelength; LANES], [moment.time; LANES]]
         });
+        let samples = CameraSampleLanes {
+            film: &filters.film,
+            lens: [&film[2], &film[3]],
+            time: &times,
+        };
+        let any = || {
+            LanePacket::all(Lane {
+                slot: NO_SLOT,
+                split: false,
+                stream: streams.get(0),
+                beta: SampledSpectrum::ONE,
+                eta_scale: 1.0,
+                cone: RayCone::default(),
+                state: estimator.camera_state(view, &Ray::INACTIVE),
+            })
+        };
+        let (rays, lanes) = batch.paths.push_any_packet(any);
+        let starts = Starts::new(view, vectorizer, samples, traced, rays);
+        lanes.split = [0; LANES];
         lanes.streams = streams;
-        for (i, &[x, y]) in pixels.iter().enumerate() {
-            let is_traced = traced.contains(x, y);
-            let is_wanted = wanted.contains(x, y) || (self.whole_tiles && is_traced);
-            let has_slot = is_wanted || light.contains(x, y);
-            if !is_traced && !has_slot {
-                continue;
-            }
-            let moment = shared_moment.unwrap_or(Moment {
-                wavelength: detector[0][i],
-                time: detector[1][i],
-            });
-            let time = self.view.camera.scene_time(moment.time);
-            let start = starts.get(self.view, i, time);
-            let mut broken = false;
-            (lanes.cone_width[i], lanes.cone_spread[i]) = (start.cone.width, start.cone.spread);
-            // Else it is a light path only, or nothing comes through the lenses.
-            if is_traced && start.exists {
-                broken = !start.ray.is_valid();
-                if !broken {
-                    rays.set(i, &start.ray);
-                    lanes.states.set(i, self.estimator.camera_state(self.view, &start.ray));
-                    self.stats.camera_rays += 1;
-                }
-            }
-            if is_wanted {
+        lanes.beta = SpectrumLanes::all(SampledSpectrum::ONE);
+        lanes.eta_scale = [1.0; LANES];
+        (lanes.cone_width, lanes.cone_spread) = (starts.width, starts.spread);
+        for i in 0..LANES {
+            lanes.states.set(i, estimator.camera_state(view, &rays.get(i)));
+        }
+        self.stats.camera_rays += u64::from(starts.sent.len());
+        lanes.slot = [NO_SLOT; LANES];
+        for i in slots.lanes() {
+            if wanted.has(i) {
                 lanes.slot[i] = self.slots.len() as u32;
             }
-            if has_slot {
-                self.slots.push(Slot {
-                    pixel: [x, y],
-                    sample,
-                    filter_weight: starts.filters.weight[i],
-                    importance: start.importance,
-                    time,
-                    lambda: moment.wavelengths(self.scene.color()),
-                    l: SampledSpectrum::ZERO,
-                    broken,
-                });
-            }
+            let moment = Moment {
+                wavelength: wavelengths[i],
+                time: times[i],
+            };
+            self.slots.push(Slot {
+                pixel: pixel(i),
+                sample,
+                filter_weight: filters.weight[i],
+                importance: starts.importance[i],
+                time: view.camera.scene_time(moment.time),
+                lambda: moment.wavelengths(color),
+                l: SampledSpectrum::ZERO,
+                broken: starts.broken.has(i),
+            });
         }
-        batch.paths.push_packet(&rays, &lanes);
     }
+}
+
+/// The pixel of a lane.
+#[inline(always)]
+fn pixel_of_block([x, y]: [u32; 2], lane: usize) -> [u32; 2] {
+    [x + lane as u32 % BLOCK[0], y + lane as u32 / BLOCK[0]]
+}
+
+/// The numbers of the groups of film and detector of eight samples: those that are asked for.
+#[inline]
+fn draw(
+    streams: &StreamLanes,
+    vectorizer: Vectorizer,
+    view: &View,
+    color: ColorMode,
+    shared_moment: Option<Moment>,
+) -> [[Lanes; 4]; 2] {
+    const { assert!(DETECTOR_GROUP == FILM_GROUP + 1) };
+    let needs_moment = shared_moment.is_none() && (color == ColorMode::Spectral || view.camera.has_exposure());
+    match (view.camera.has_lens(), needs_moment) {
+        (true, _) => streams.draw::<0b1111, 0b0011>(vectorizer, FILM_GROUP),
+        (false, true) => streams.draw::<0b0011, 0b0011>(vectorizer, FILM_GROUP),
+        (false, false) => streams.draw::<0b0011, 0>(vectorizer, FILM_GROUP),
+    }
+}
+
+/// Which lanes of a block of pixels have what.
+struct Block {
+    /// Camera rays.
+    traced: LaneSet,
+    /// Paths that the film wants.
+    wanted: LaneSet,
+    slots: LaneSet,
 }
 
 /// The pixels of a tile.
@@ -150,70 +175,99 @@ impl Pixels {
             y1: a.y1.max(b.y1),
         }
     }
-}
 
-/// A camera ray.
-struct Start {
-    /// Whether there is one: whether it comes through the lenses.
-    exists: bool,
-    ray: Ray,
-    importance: f32,
-    /// How wide it is.
-    cone: RayCone,
+    /// Those of a block.
+    #[inline]
+    fn of_block(&self, pixel: impl Fn(usize) -> [u32; 2], whole_tiles: bool) -> Block {
+        let within = |rect: &PixelRect| {
+            let contains = |i| {
+                let [x, y] = pixel(i);
+                rect.contains(x, y)
+            };
+            // A rectangle that has two opposite corners has all between.
+            if contains(0) && contains(LANES - 1) {
+                LaneSet::ALL
+            } else {
+                LaneSet::from(std::array::from_fn(contains))
+            }
+        };
+        let traced = within(&self.traced);
+        let wanted = if whole_tiles { traced } else { LaneSet::NONE };
+        let wanted = wanted.or(within(&self.wanted));
+        Block {
+            traced,
+            wanted,
+            slots: wanted.or(within(&self.light)),
+        }
+    }
 }
 
 /// The camera rays of a block.
 struct Starts {
-    filters: FilterLanes,
-    film: Vec2Lanes,
-    lens: Vec2Lanes,
-    /// All of them, if the camera knows them together.
-    rays: Option<CameraLanes>,
+    /// Which were sent.
+    sent: LaneSet,
+    /// Which could not be traced.
+    broken: LaneSet,
+    importance: Lanes,
+    width: Lanes,
+    spread: Lanes,
 }
 
 impl Starts {
-    /// From the numbers for film and lens of each pixel.
+    /// Writes the rays of the `traced` ones of these samples.
     #[inline]
-    fn new(view: &View, vectorizer: Vectorizer, pixels: &[[u32; 2]; LANES], numbers: &[Lanes; 4]) -> Self {
-        let [film_x, film_y, lens_x, lens_y] = numbers;
-        let filters = view.filter.sample_lanes(vectorizer, [film_x, film_y]);
-        let (mut film, mut lens) = (Vec2Lanes::default(), Vec2Lanes::default());
-        for (i, [x, y]) in pixels.iter().enumerate() {
-            let center = Vec2::new(*x as f32 + 0.5, *y as f32 + 0.5);
-            film.set(i, center + filters.offset.get(i));
-            lens.set(i, Vec2::new(lens_x[i], lens_y[i]));
+    fn new(
+        view: &View,
+        vectorizer: Vectorizer,
+        samples: CameraSampleLanes<'_>,
+        traced: LaneSet,
+        rays: &mut RayPacket,
+    ) -> Self {
+        let camera = &view.camera;
+        let Some(known) = camera.generate_rays(vectorizer, samples, view.detail_scale(), rays) else {
+            return Self::one_by_one(view, samples, traced, rays);
+        };
+        let valid = LaneSet::from(known.is_valid);
+        let (sent, broken) = (traced.and(valid), traced.without(valid));
+        for i in LaneSet::ALL.without(sent).lanes() {
+            rays.set(i, &Ray::INACTIVE);
         }
         Self {
-            rays: view.camera.rays(vectorizer, &film, &lens, view.detail_scale()),
-            filters,
-            film,
-            lens,
+            sent,
+            broken,
+            importance: [1.0; LANES],
+            width: known.width,
+            spread: known.spread,
         }
     }
 
-    /// That of a lane.
-    #[inline]
-    fn get(&self, view: &View, lane: usize, time: f32) -> Start {
-        if let Some(rays) = &self.rays {
-            return Start {
-                exists: true,
-                ray: rays.ray(lane, time),
-                importance: 1.0,
-                cone: rays.cone(lane),
+    fn one_by_one(view: &View, samples: CameraSampleLanes<'_>, traced: LaneSet, rays: &mut RayPacket) -> Self {
+        *rays = RayPacket::EMPTY;
+        let (mut sent, mut broken) = ([false; LANES], [false; LANES]);
+        let (mut importance, mut width, mut spread) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let sample = CameraSample {
+                film: samples.film.get(i),
+                lens: Vec2::new(samples.lens[0][i], samples.lens[1][i]),
+                time: samples.time[i],
             };
+            let cone = view.camera.ray_cone(sample.film, view.detail_scale());
+            (width[i], spread[i]) = (cone.width, cone.spread);
+            // Else nothing comes through the lenses.
+            if let Some((ray, weight)) = view.camera.generate_ray(&sample) {
+                importance[i] = weight;
+                (sent[i], broken[i]) = (ray.is_valid(), !ray.is_valid());
+                if sent[i] && traced.has(i) {
+                    rays.set(i, &ray);
+                }
+            }
         }
-        let sample = CameraSample {
-            film: self.film.get(lane),
-            lens: self.lens.get(lane),
-            time: 0.0,
-        };
-        let start = view.camera.ray_at(&sample, time);
-        let (ray, importance) = start.unwrap_or((Ray::INACTIVE, 0.0));
-        Start {
-            exists: start.is_some(),
-            ray,
+        Self {
+            sent: traced.and(sent.into()),
+            broken: traced.and(broken.into()),
             importance,
-            cone: view.camera.ray_cone(sample.film, view.detail_scale()),
+            width,
+            spread,
         }
     }
 }

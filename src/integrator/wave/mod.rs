@@ -52,7 +52,7 @@ pub(super) struct Wave<'s, E: Estimator> {
     /// Batches whose memory can be used again.
     spare: Vec<Batch<E::State>>,
     hits: Vec<HitPacket>,
-    surfaces: SurfaceLanes,
+    surfaces: [SurfaceLanes<'s>; 2],
     first_hits: FirstHits,
     shadows: ShadowQueue<ContributionLanes>,
     splats: ShadowQueue<SplatLanes>,
@@ -78,7 +78,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
             pending: Vec::new(),
             spare: Vec::new(),
             hits: Vec::new(),
-            surfaces: SurfaceLanes::default(),
+            surfaces: SurfaceLanes::two(scene.world()),
             first_hits: FirstHits::default(),
             shadows: ShadowQueue::default(),
             splats: ShadowQueue::default(),
@@ -125,11 +125,13 @@ impl<'s, E: Estimator> Wave<'s, E> {
 
     /// Takes all paths to their ends.
     fn finish_pending(&mut self) {
+        let mut surfaces = std::mem::take(&mut self.surfaces);
         while let Some(batch) = self.pending.pop() {
             self.trace(&batch);
-            self.shade(&batch);
+            self.shade(&batch, &mut surfaces);
             self.spare.push(batch);
         }
+        self.surfaces = surfaces;
     }
 
     /// The stage of paths after `depth` scattering events, which collects those that will have had `next` of them.
@@ -185,17 +187,21 @@ impl<'s, E: Estimator> Wave<'s, E> {
     }
 
     /// Shades each lane, collects those that go on, and brings home what lights send.
-    fn shade(&mut self, batch: &Batch<E::State>) {
+    fn shade(&mut self, batch: &Batch<E::State>, surfaces: &mut [SurfaceLanes<'s>; 2]) {
         let (estimator, scene, vectorizer) = (self.estimator, self.scene, self.vectorizer);
-        let (hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
+        let (all_hits, mut stats) = (std::mem::take(&mut self.hits), std::mem::take(&mut self.stats));
         let (mut start, shadows_before) = (Instant::now(), stats.times.shadow);
-        let mut surfaces = std::mem::take(&mut self.surfaces);
         let mut first_hits = std::mem::take(&mut self.first_hits);
         let (view, space) = (self.view, self.gbuffer_space());
         let is_first = first_hits.are_wanted() && batch.depth == 0 && batch.mode == TransportMode::Radiance;
         let mut stage = self.stage(batch.mode, batch.depth, batch.depth + 1);
-        for ((rays, lanes), hits) in batch.paths.packets().zip(&hits) {
-            scene.interactions(&mut surfaces, rays, hits);
+        for (index, ((rays, lanes), hits)) in batch.paths.packets().zip(&all_hits).enumerate() {
+            if index % 2 == 0 {
+                // Two at a time: what is gathered lane by lane is in its place when it is read.
+                let both = batch.paths.rays()[index..].iter().zip(&all_hits[index..]);
+                scene.interactions(surfaces, both);
+            }
+            let surfaces = &surfaces[index % 2];
             let numbers = EventLanes::new(vectorizer, &lanes.streams, batch.depth);
             let mut rest = active_lanes(rays, &lanes.slot);
             if !is_first {
@@ -204,7 +210,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                     lanes,
                     rays,
                     hits,
-                    surfaces: &surfaces,
+                    surfaces,
                     numbers: &numbers,
                 };
                 let together = estimator.shade_together(&mut stage, &packet);
@@ -217,7 +223,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
                 let mut si;
                 let (mut surface, mut cone) = (None, lane.cone);
                 if let Some(hit) = hits.get(i) {
-                    si = surfaces.get(i, ray, hit);
+                    si = surfaces.get(i, hit, rays, hits);
                     cone = cone.after(si.p.distance(ray.origin));
                     si.footprint = cone.width;
                     surface = Some(&si);
@@ -242,7 +248,7 @@ impl<'s, E: Estimator> Wave<'s, E> {
         stage.flush_shadows(&mut stats);
         lap(&mut start, &mut stats.times.shade);
         stats.times.shade -= stats.times.shadow - shadows_before;
-        (self.hits, self.stats, self.surfaces, self.first_hits) = (hits, stats, surfaces, first_hits);
+        (self.hits, self.stats, self.first_hits) = (all_hits, stats, first_hits);
     }
 }
 

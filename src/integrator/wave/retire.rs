@@ -4,9 +4,11 @@ use std::sync::Mutex;
 
 use super::Wave;
 use crate::desc::FilmKind;
-use crate::film::{LayerSample, Splat, TileSums, lock};
-use crate::integrator::DroppedSample;
+use crate::film::{LayerSample, LinearSensor, SampleLanes, Sensor, Splat, SurfaceSample, TileSums, lock};
+use crate::integrator::lane::Slot;
 use crate::integrator::stage::{Estimator, Retiring};
+use crate::math::{Kernel, LANES, LaneSet, VectorLanes};
+use crate::scene::View;
 use crate::spectrum::SampledSpectrum;
 
 impl<E: Estimator> Wave<'_, E> {
@@ -33,10 +35,7 @@ impl<E: Estimator> Wave<'_, E> {
         for splat in self.landed.drain(..) {
             let slot = &self.slots[splat.slot as usize];
             if slot.broken || !splat.value.is_finite() || splat.value.min_value() < 0.0 {
-                self.stats.drop_sample(DroppedSample {
-                    pixel: slot.pixel,
-                    sample: slot.sample,
-                });
+                self.stats.drop_sample(slot.dropped());
                 continue;
             }
             self.splatted.push(Splat {
@@ -49,31 +48,95 @@ impl<E: Estimator> Wave<'_, E> {
     }
 
     fn retire_slots(&mut self, sums: &mut TileSums) {
-        let rect = sums.rect();
+        let (packets, rest) = self.slots.as_chunks::<LANES>();
         let keeps_layers = self.film.kind() != FilmKind::Rgb;
-        for (index, slot) in self.slots.iter().enumerate() {
-            let [x, y] = slot.pixel;
-            if !rect.contains(x, y) {
-                continue;
-            }
-            let l = slot.l * slot.importance;
-            let rgb = slot.is_good().then(|| self.view.sensor.to_rgb(l, &slot.lambda));
-            if keeps_layers {
-                let sample = LayerSample {
-                    weight: slot.filter_weight,
-                    rgb,
-                    l: rgb.map_or(SampledSpectrum::ZERO, |_| self.view.sensor.limit(l)),
-                    lambda: &slot.lambda,
-                    surface: self.first_hits.get(index),
-                };
-                sums.add_layers(x, y, &sample);
-            }
-            if !sums.add(x, y, rgb, slot.filter_weight) {
-                self.stats.drop_sample(DroppedSample {
-                    pixel: slot.pixel,
-                    sample: slot.sample,
-                });
+        let alone = if keeps_layers { &self.slots[..] } else { rest };
+        let first = self.slots.len() - alone.len();
+        for (index, slot) in alone.iter().enumerate() {
+            let is_dropped = !retire_slot(self.view, sums, slot, self.first_hits.get(first + index), keeps_layers);
+            if is_dropped {
+                self.stats.drop_sample(slot.dropped());
             }
         }
+        if keeps_layers {
+            return;
+        }
+        let rect = sums.rect();
+        let sensor = self.view.sensor.linear();
+        for slots in packets {
+            let pixels = slots.each_ref().map(|slot| slot.pixel);
+            let samples = match sensor {
+                Some(sensor) => self.vectorizer.run(Develop { slots, sensor }),
+                None => develop(&self.view.sensor, slots),
+            };
+            let chosen = LaneSet::from(pixels.map(|[x, y]| rect.contains(x, y)));
+            let dropped = sums.add_together(self.vectorizer, chosen, &pixels, &samples);
+            for lane in dropped.lanes() {
+                self.stats.drop_sample(slots[lane].dropped());
+            }
+        }
+    }
+}
+
+/// Adds what a slot has gathered to its pixel, if the film has it; false if it was dropped.
+fn retire_slot(
+    view: &View,
+    sums: &mut TileSums,
+    slot: &Slot,
+    first_hit: Option<&SurfaceSample>,
+    keeps_layers: bool,
+) -> bool {
+    let [x, y] = slot.pixel;
+    if !sums.rect().contains(x, y) {
+        return true;
+    }
+    let l = slot.l * slot.importance;
+    let rgb = slot.is_good().then(|| view.sensor.to_rgb(l, &slot.lambda));
+    if keeps_layers {
+        let sample = LayerSample {
+            weight: slot.filter_weight,
+            rgb,
+            l: rgb.map_or(SampledSpectrum::ZERO, |_| view.sensor.limit(l)),
+            lambda: &slot.lambda,
+            surface: first_hit,
+        };
+        sums.add_layers(x, y, &sample);
+    }
+    sums.add(x, y, rgb, slot.filter_weight)
+}
+
+/// What the sensor makes of eight slots.
+fn develop(sensor: &Sensor, slots: &[Slot; LANES]) -> SampleLanes {
+    let mut samples = SampleLanes::default();
+    for (i, slot) in slots.iter().enumerate() {
+        samples.weight[i] = slot.filter_weight;
+        samples.is_good[i] = slot.is_good();
+        if samples.is_good[i] {
+            samples
+                .rgb
+                .set(i, sensor.to_rgb(slot.l * slot.importance, &slot.lambda).into());
+        }
+    }
+    samples
+}
+
+/// The same where it looks at no wavelengths.
+struct Develop<'a> {
+    slots: &'a [Slot; LANES],
+    sensor: LinearSensor,
+}
+
+impl Kernel for Develop<'_> {
+    type Output = SampleLanes;
+
+    #[inline(always)]
+    fn call(self) -> SampleLanes {
+        let mut samples = SampleLanes::default();
+        for (i, slot) in self.slots.iter().enumerate() {
+            samples.rgb.set(i, self.sensor.to_rgb(slot.l * slot.importance));
+            samples.weight[i] = slot.filter_weight;
+            samples.is_good[i] = slot.is_good();
+        }
+        samples
     }
 }

@@ -108,14 +108,12 @@ impl LightLanes {
         if is_sphere != [false; LANES] {
             is_sphere = self.plain.spheres.fit(is_sphere, p);
         }
-        self.vectorizer.run(Compute {
-            lights: &self.plain,
-            has_planes: is_plane != [false; LANES],
-            is_sphere,
-            p,
-            u,
-            samples: &mut self.samples,
-        });
+        match (is_plane != [false; LANES], is_sphere != [false; LANES]) {
+            (false, false) => {}
+            (true, false) => self.compute::<true, false>(is_sphere, p, u),
+            (false, true) => self.compute::<false, true>(is_sphere, p, u),
+            (true, true) => self.compute::<true, true>(is_sphere, p, u),
+        }
         for (lane, chosen) in lights.iter().enumerate() {
             if is_plane[lane] || is_sphere[lane] {
                 continue;
@@ -138,15 +136,28 @@ impl LightLanes {
         if !is_held {
             return false;
         }
-        self.vectorizer.run(Compute {
+        self.compute::<true, false>([false; LANES], p, u);
+        true
+    }
+
+    /// Samples the lights that are held, planes, or spheres, or both; which ones `is_sphere` says.
+    #[inline]
+    fn compute<const HAS_PLANES: bool, const HAS_SPHERES: bool>(
+        &mut self,
+        is_sphere: [bool; LANES],
+        p: &Vec3Lanes,
+        u: [&Lanes; 2],
+    ) {
+        // Not by the kernel, which would copy it by way of the stack.
+        self.samples.li = self.plain.radiance;
+        (self.samples.is_delta, self.samples.is_infinite) = ([false; LANES], [false; LANES]);
+        self.vectorizer.run(Compute::<HAS_PLANES, HAS_SPHERES> {
             lights: &self.plain,
-            has_planes: true,
-            is_sphere: [false; LANES],
+            is_sphere,
             p,
             u,
             samples: &mut self.samples,
         });
-        true
     }
 
     /// What was sampled last.
@@ -218,51 +229,47 @@ impl LightSampleLanes {
     }
 }
 
-/// See [`LightLanes::sample`].
-struct Compute<'a> {
+/// See [`LightLanes::compute`].
+struct Compute<'a, const HAS_PLANES: bool, const HAS_SPHERES: bool> {
     lights: &'a PlainLights,
-    has_planes: bool,
     is_sphere: [bool; LANES],
     p: &'a Vec3Lanes,
     u: [&'a Lanes; 2],
-    /// Written at the end, all at once: the compiler cannot know that they are apart from the others.
+    /// Written at the end: the compiler cannot know that they are apart from the others.
     samples: &'a mut LightSampleLanes,
 }
 
-impl Kernel for Compute<'_> {
+impl<const HAS_PLANES: bool, const HAS_SPHERES: bool> Kernel for Compute<'_, HAS_PLANES, HAS_SPHERES> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
         let mut points = Points::default();
-        if self.has_planes {
+        if HAS_PLANES {
             points = self.lights.planes.points(self.p, self.u);
         }
-        if self.is_sphere != [false; LANES] {
+        if HAS_SPHERES {
             let on_spheres = self.lights.spheres.points(self.p, self.u);
             points = on_spheres.or(self.is_sphere, &points);
         }
-        let mut samples = LightSampleLanes::default();
-        for i in 0..LANES {
-            let (point, ng, pdf) = (points.p.get(i), points.ng.get(i), points.pdf[i]);
-            let to_light = point - self.p.get(i);
+        let (mut wi, mut pdf) = (Vec3Lanes::default(), Lanes::default());
+        for (i, pdf) in pdf.iter_mut().enumerate() {
+            let (ng, density) = (points.ng.get(i), points.pdf[i]);
+            let to_light = points.p.get(i) - self.p.get(i);
             let inverse_distance = 1.0 / to_light.length();
-            let wi = to_light * inverse_distance;
-            let radiance = self.lights.radiance.get(i);
+            let direction = to_light * inverse_distance;
             let is_found = (inverse_distance > 0.0)
                 & (inverse_distance < f32::INFINITY)
-                & (self.lights.two_sided[i] | (ng.dot(-wi) > 0.0))
-                & (pdf > 0.0)
-                & (pdf < f32::INFINITY)
-                & !radiance.is_black();
-            samples.li.set(i, radiance);
-            samples.wi.set(i, wi);
-            samples.pdf[i] = if is_found { pdf } else { 0.0 };
-            samples.p.set(i, point);
-            samples.error[i] = points.error[i];
-            samples.ng.set(i, ng);
+                & (self.lights.two_sided[i] | (ng.dot(-direction) > 0.0))
+                & (density > 0.0)
+                & (density < f32::INFINITY)
+                & !self.lights.radiance.get(i).is_black();
+            wi.set(i, direction);
+            *pdf = if is_found { density } else { 0.0 };
         }
-        *self.samples = samples;
+        let samples = self.samples;
+        (samples.wi, samples.pdf) = (wi, pdf);
+        (samples.p, samples.error, samples.ng) = (points.p, points.error, points.ng);
     }
 }
 

@@ -4,9 +4,9 @@ use std::f32::consts::FRAC_1_PI;
 
 use crate::geometry::SurfaceInteraction;
 use crate::material::{ConductorLanes, Distribution, LaneSample, LaneValue, LocalValue, Material};
-use crate::math::{Frame, Vec2, Vec3, Vec3Lanes, VectorLanes};
+use crate::math::{Frame, LANES, Vec2, Vec3, Vec3Lanes, VectorLanes};
 use crate::sampling::warp;
-use crate::spectrum::{SampledSpectrum, SpectrumLanes, Wavelengths};
+use crate::spectrum::{SampledSpectrum, Wavelengths};
 
 /// A kind of surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,8 @@ impl Kind {
 /// The surfaces of lanes.
 #[derive(Debug, Default)]
 pub(super) struct KindLanes {
-    albedo: SpectrumLanes,
+    /// Lane by lane: they are put there one by one, and read long after.
+    albedo: [SampledSpectrum; LANES],
     conductors: ConductorLanes,
     /// Of conductors; zero where it does not matter which way it points.
     tangent: Vec3Lanes,
@@ -38,7 +39,7 @@ impl KindLanes {
     /// Puts a Lambertian surface into a lane.
     #[inline]
     pub fn set_lambertian(&mut self, lane: usize, albedo: SampledSpectrum) -> Kind {
-        self.albedo.set(lane, albedo);
+        self.albedo[lane] = albedo;
         Kind::Lambertian
     }
 
@@ -93,7 +94,7 @@ impl Lambertian {
     #[inline(always)]
     fn value(kinds: &KindLanes, lane: usize, cos: f32) -> LocalValue {
         LocalValue {
-            f: kinds.albedo.get(lane) * FRAC_1_PI,
+            f: kinds.albedo[lane] * FRAC_1_PI,
             pdf: cos * FRAC_1_PI,
         }
     }

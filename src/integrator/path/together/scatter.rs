@@ -38,7 +38,7 @@ pub struct Scatter<'a, L> {
     pub rays: &'a RayPacket,
     pub lanes: &'a LanePacket<Origin>,
     pub surfaces: &'a Surfaces,
-    pub numbers: &'a OneLobeLanes,
+    pub numbers: &'a OneLobeLanes<'a>,
     pub paths: &'a Paths,
     /// The points of lights that they have found.
     pub lights: &'a LightSampleLanes,
@@ -152,7 +152,7 @@ impl<L: Lobes> Scatter<'_, L> {
             numbers,
             ..
         } = self;
-        let [u, v] = numbers.bsdf();
+        let [u, v] = numbers.bsdf;
         let wo = places.wo.get(i);
         let LaneSample {
             wi,
@@ -168,7 +168,7 @@ impl<L: Lobes> Scatter<'_, L> {
         let direction = places.frame(i).to_world(wi).normalize();
         let throughput = beta.max_value() * lanes.eta_scale[i];
         let survival = survival(self.depth, throughput, self.is_unlimited);
-        let survives = (survival >= 1.0) | (numbers.roulette()[i] < survival);
+        let survives = (survival >= 1.0) | (numbers.roulette[i] < survival);
         let thinned = if survival < 1.0 { 1.0 / survival } else { 1.0 };
         scattered.goes_on[i] = exists & (wo.z != 0.0) & (wi.z != 0.0) & !bsdf.f.is_black() & survives;
         scattered.beta.set(i, beta * thinned);
