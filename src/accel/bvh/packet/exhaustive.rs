@@ -5,10 +5,7 @@
 
 use super::Packet;
 use super::seen::Seen;
-use crate::accel::bvh::few::Facet;
-use crate::accel::bvh::lanes::Lanes;
-use crate::accel::bvh::query::Candidate;
-use crate::geometry::HitPacket;
+use crate::accel::bvh::lanes::{Lanes, lanes_of};
 
 impl<const N: usize> Packet<'_, N> {
     /// Tests the rays of `lanes` against all primitives. Returns those that it leaves out, as single precision cannot decide about them or their
@@ -33,15 +30,16 @@ impl<const N: usize> Packet<'_, N> {
     /// miss its box by rounding, or are parallel to it.
     #[inline(always)]
     fn facets<S: Lanes<N>, const ANY: bool>(&mut self, s: S, seen: &Seen<'_>, all: u32) -> u32 {
-        let tnear = s.load(&self.prepared.rays.tnear);
         let wide = s.widen(&self.prepared.rays);
+        let (tnear, mut tfar) = (s.load(&self.prepared.rays.tnear), s.load(&self.prepared.rays.tfar));
+        // What is met stays in registers: the next triangle would wait for memory.
+        let [mut geometries, mut primitives] = [s.load_u(&self.ids[0]), s.load_u(&self.ids[1])];
         let (mut open, mut unclear) = (all, 0);
         for facet in &seen.few.facets {
             let through = open & seen.through(facet);
             if through == 0 {
                 continue;
             }
-            let tfar = s.load(&self.prepared.rays.tfar);
             let [first, last] = seen.range(s, facet);
             unclear |= through & s.bits(s.lt(last, first));
             let mut lanes = through & s.bits(s.and(s.lt(tnear, last), s.le(first, tfar)));
@@ -64,25 +62,35 @@ impl<const N: usize> Packet<'_, N> {
             let finite = s.bits(s.lt(s.abs(distances), s.splat(f32::INFINITY)));
             unclear |= lanes & !finite;
             let t = s.least(s.greatest(distances, first), last);
-            let within = s.and(s.lt(tnear, t), s.le(t, tfar));
-            self.take_all(s, t, lanes & s.bits(within), &candidate(facet));
+            let inside = lanes & s.bits(s.and(s.lt(tnear, t), s.le(t, tfar)));
+            let mut closer = inside & s.bits(s.lt(t, tfar));
+            if closer != inside {
+                closer |= preceding(s, inside & !closer, facet.ids, [geometries, primitives]);
+            }
+            let closer = s.mask(closer);
+            let [geometry, primitive] = facet.ids;
+            tfar = s.blend(closer, tfar, t);
+            geometries = s.blend_u(closer, geometries, s.splat_u(geometry));
+            primitives = s.blend_u(closer, primitives, s.splat_u(primitive));
         }
-        if let (true, Some(facet)) = (ANY, seen.few.facets.first()) {
+        if ANY {
             // Which one they have met does not matter.
-            self.mark(s, all & !open, &candidate(facet));
+            geometries = s.blend_u(s.mask(all & !open), geometries, s.splat_u(0));
         }
+        s.store(tfar, &mut self.prepared.rays.tfar);
+        s.store_u(geometries, &mut self.ids[0]);
+        s.store_u(primitives, &mut self.ids[1]);
         unclear
     }
 }
 
-/// A hit with a triangle.
+/// Of `lanes`, which meet a triangle with these ids at the distance of what they have met, those that it precedes.
+#[cold]
 #[inline(always)]
-fn candidate(facet: &Facet) -> Candidate {
-    let [geometry, primitive] = facet.ids;
-    Candidate {
-        t: 0.0,
-        geometry,
-        primitive,
-        instance: HitPacket::NONE,
-    }
+fn preceding<S: Lanes<N>, const N: usize>(s: S, lanes: u32, ids: [u32; 2], met: [S::U; 2]) -> u32 {
+    let mut rows = [[0; N]; 2];
+    s.store_u(met[0], &mut rows[0]);
+    s.store_u(met[1], &mut rows[1]);
+    let precedes = |&lane: &usize| ids < [rows[0][lane], rows[1][lane]];
+    lanes_of(lanes).filter(precedes).fold(0, |bits, lane| bits | 1 << lane)
 }

@@ -88,7 +88,7 @@ impl<const N: usize> Packet<'_, N> {
 
     /// Marks lanes as having met something.
     #[inline(always)]
-    pub(super) fn mark<S: Lanes<N>>(&mut self, s: S, lanes: u32, candidate: &Candidate) {
+    fn mark<S: Lanes<N>>(&mut self, s: S, lanes: u32, candidate: &Candidate) {
         let mask = s.mask(lanes);
         let ids = [candidate.geometry, candidate.primitive, candidate.instance];
         for (row, id) in self.ids.iter_mut().zip(ids) {
