@@ -144,7 +144,6 @@ impl<const N: usize> Prepared<N> {
         self.usual = s.bits(s.and(s.le(smallest, steepest), s.le(steepest, largest)));
         s.store(s.div(pick(dy, dz, dx), along), &mut self.scale[0]);
         s.store(s.div(pick(dz, dx, dy), along), &mut self.scale[1]);
-        s.store(s.div(s.splat(1.0), along), &mut self.scale[2]);
         // Adding zero turns a negative zero into a positive one, whose bits compare as an integer.
         s.store(s.add(s.load(&self.rays.tnear), s.splat(0.0)), &mut self.rays.tnear);
         let least = s.mul(s.splat(LEAST_SLOPE), steepest);
@@ -152,6 +151,9 @@ impl<const N: usize> Prepared<N> {
             let scale = s.copysign(s.greatest(slope[axis], least), direction[axis]);
             s.store(s.div(s.splat(1.0), scale), &mut self.inverse[axis]);
         }
+        // Along the greatest axis that is 1 over the direction.
+        let [x, y, z] = load(s, &self.inverse);
+        s.store(pick(x, y, z), &mut self.scale[2]);
     }
 
     /// Computes what boxes need, from what triangles need.
