@@ -13,6 +13,8 @@ mod sphere;
 mod surface;
 mod surface_lanes;
 mod triangle;
+mod triangle_lanes;
+mod triangle_records;
 mod tube;
 mod vertices;
 mod world;

@@ -1,7 +1,10 @@
 //! From the ids of a hit to the surface there. Distance and position are recomputed from ray and primitive in double precision,
 //! so that they do not depend on the backend or on its vector width.
 
-use super::triangle::{self, Corners, Facing, LEAST_ERROR, Parametrization, rounding_error};
+use super::triangle::{
+    self, Corners, LEAST_ERROR, Parametrization, TrianglePlane, TrianglePoint, facing_side, rounding_error,
+    shading_normal,
+};
 use super::{GeometryId, HitPacket, InstanceId, PrimitiveId, Ray, Shape, Sphere, TriangleMesh, World};
 use crate::math::{DAffine3, DVec3, Vec2, Vec3, gamma, offset_ray_origin};
 
@@ -212,16 +215,16 @@ fn to_world(
 
 fn triangle_surface(mesh: &TriangleMesh, triangle: usize, origin: DVec3, direction: DVec3, time: f32) -> LocalSurface {
     let vertices = mesh.triangle(triangle, time);
-    let point = triangle::point(&vertices, origin, direction);
-    let (barycentrics, ng) = point.in_single_precision();
+    let TrianglePlane { error, ng } = TrianglePlane::of(&vertices);
+    let TrianglePoint { p, barycentrics } = triangle::point(&vertices, origin, direction);
     let Corners { normals, uvs, side } = mesh.corners(triangle);
-    let Facing { side, ns } = Facing::at(&normals, side, ng, barycentrics);
+    let side = facing_side(&normals, side, ng.as_vec3());
     let Parametrization { dpdu, dpdv, uv } = Parametrization::at(&uvs, &vertices, barycentrics);
     LocalSurface {
-        p: point.p,
-        error: point.error,
-        ng: point.ng * f64::from(side),
-        ns,
+        p,
+        error,
+        ng: ng * f64::from(side),
+        ns: shading_normal(&normals, barycentrics),
         dpdu,
         dpdv,
         uv,

@@ -3,9 +3,11 @@
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::mesh::{NO_NORMALS, PLAIN_UVS};
-use super::triangle::{self, Facing, Parametrization, rounding_error};
-use super::{Hit, HitPacket, Ray, RayPacket, Shape, SurfaceInteraction, TriangleMesh, World};
+use super::mesh::PLAIN_UVS;
+use super::triangle::{self, Parametrization, TrianglePoint, rounding_error, shading_normal};
+use super::triangle_lanes::{GatheredTriangles, Mesh, TriangleLanes, set_corners, triangle_hit};
+use super::triangle_records::{RecordLanes, TriangleRecord, TriangleRecords};
+use super::{Hit, HitPacket, Ray, RayPacket, SurfaceInteraction, World};
 use crate::math::{Kernel, LANES, LaneSet, Lanes, Vec2, Vec2Lanes, Vec3, Vec3Lanes, VectorLanes, Vectorizer};
 
 /// The surfaces that the lanes of a packet hit: the bits of [`World::interaction`], several times faster where they hit triangles in
@@ -15,7 +17,12 @@ pub struct SurfaceLanes<'a> {
     vectorizer: Vectorizer,
     /// By geometry; of those that are no meshes, or that move, nothing.
     meshes: Arc<[Mesh<'a>]>,
-    triangles: Triangles,
+    /// What is known of the world's triangles, if anything.
+    known: Option<&'a TriangleRecords>,
+    /// Whether all triangles that the lanes hit have records, and are in `records`, or are gathered.
+    are_recorded: bool,
+    records: RecordLanes,
+    gathered: GatheredTriangles,
     /// Whether the lane hit a triangle in world space.
     is_triangle: [bool; LANES],
     surfaces: Surfaces,
@@ -25,51 +32,7 @@ pub struct SurfaceLanes<'a> {
     others: [Option<SurfaceInteraction>; LANES],
 }
 
-/// What a mesh has, at hand.
-#[derive(Clone, Copy, Debug, Default)]
-struct Mesh<'a> {
-    indices: &'a [[u32; 3]],
-    /// As many as there are normals, if there are any.
-    positions: &'a [Vec3],
-    /// Empty if it has none.
-    normals: &'a [Vec3],
-    /// Empty if it has none.
-    uvs: &'a [Vec2],
-    /// See [`Corners::side`](triangle::Corners::side).
-    side: f32,
-    /// It, if it moves.
-    moving: Option<&'a TriangleMesh>,
-}
-
-impl<'a> Mesh<'a> {
-    /// Of a geometry's shape; without triangles if it is none.
-    fn of(shape: &'a Shape) -> Self {
-        let Shape::Mesh(mesh) = shape else {
-            return Self::default();
-        };
-        Self {
-            indices: mesh.indices(),
-            positions: mesh.positions(0),
-            normals: mesh.normals().unwrap_or_default(),
-            uvs: mesh.uvs().unwrap_or_default(),
-            side: mesh.side(),
-            moving: Some(mesh).filter(|mesh| mesh.is_moving()),
-        }
-    }
-}
-
-/// What [`triangle::point`] and [`Facing::at`] are given.
-#[derive(Clone, Copy, Debug, Default)]
-struct Triangles {
-    /// Of each corner what the lanes have, one after the other: as meshes have it, in two copies and not in three.
-    vertices: [[Vec3; LANES]; 3],
-    normals: [[Vec3; LANES]; 3],
-    side: Lanes,
-    /// Whether the lane's normals are those of a mesh without any.
-    has_no_normals: [bool; LANES],
-}
-
-/// What they give: see [`SurfaceInteraction`].
+/// Points of triangles: see [`SurfaceInteraction`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surfaces {
     /// See [`SurfaceInteraction::p`].
@@ -99,6 +62,7 @@ impl<'a> SurfaceLanes<'a> {
         let meshes = world.geometries().iter().map(|geometry| Mesh::of(&geometry.shape));
         let one = Self {
             meshes: meshes.collect(),
+            known: Some(world.triangle_records()).filter(|known| !known.is_empty()),
             ..Self::default()
         };
         [one.clone(), one]
@@ -109,17 +73,38 @@ impl<'a> SurfaceLanes<'a> {
     #[inline]
     pub fn gather(&mut self, rays: &RayPacket, hits: &HitPacket) {
         self.parametrizations.take();
+        self.are_recorded = self.known.is_some_and(|known| self.gather_records(known, hits));
+        if self.are_recorded {
+            return;
+        }
         for lane in 0..LANES {
             let triangle = triangle_hit(&self.meshes, hits, lane);
             self.is_triangle[lane] = triangle.is_some();
             if let Some((mesh, corners)) = triangle {
-                self.triangles.set(lane, mesh, corners);
+                self.gathered.set(lane, mesh, corners);
                 if let Some(moving) = mesh.moving {
                     let vertices = moving.triangle(hits.primitive[lane] as usize, rays.time[lane]);
-                    set_all(&mut self.triangles.vertices, lane, [0, 1, 2], &vertices);
+                    set_corners(&mut self.gathered.vertices, lane, [0, 1, 2], &vertices);
                 }
             }
         }
+    }
+
+    /// Collects records, if all triangles that were hit have them.
+    #[inline(always)]
+    fn gather_records(&mut self, known: &TriangleRecords, hits: &HitPacket) -> bool {
+        static NONE: TriangleRecord = TriangleRecord::NONE;
+        let records: [_; LANES] = std::array::from_fn(|lane| {
+            let record = known.get(hits.geometry[lane], hits.primitive[lane]);
+            record.filter(|_| hits.instance[lane] == HitPacket::NONE)
+        });
+        self.is_triangle = records.map(|record| record.is_some());
+        let have_all = hits.hit_lanes().without(self.is_triangle.into()).is_empty();
+        if have_all {
+            let records = records.map(|record| record.unwrap_or(&NONE));
+            self.records.set(self.vectorizer, records);
+        }
+        have_all
     }
 
     /// Computes what the rays that take part hit; `other` says it, for a ray, its hit and the distance there, of what is not a triangle in
@@ -133,13 +118,22 @@ impl<'a> SurfaceLanes<'a> {
     ) {
         let on_triangles = LaneSet::from(self.is_triangle);
         if !on_triangles.is_empty() {
-            let triangles = &self.triangles;
-            let surfaces = &mut self.surfaces;
-            self.vectorizer.run(Compute {
-                rays,
-                triangles,
-                surfaces,
-            });
+            let (vectorizer, surfaces) = (self.vectorizer, &mut self.surfaces);
+            if self.are_recorded {
+                let triangles = &self.records;
+                vectorizer.run(Compute {
+                    rays,
+                    triangles,
+                    surfaces,
+                });
+            } else {
+                let triangles = &self.gathered;
+                vectorizer.run(Compute {
+                    rays,
+                    triangles,
+                    surfaces,
+                });
+            }
         }
         if !hits.hit_lanes().without(on_triangles).is_empty() {
             self.fill_others(rays, hits, other);
@@ -196,25 +190,27 @@ impl<'a> SurfaceLanes<'a> {
         let mut uvs = [[Vec2::ZERO; LANES]; 3];
         for lane in 0..LANES {
             match triangle_hit(&self.meshes, hits, lane) {
-                Some((mesh, corners)) if !mesh.uvs.is_empty() => set_all(&mut uvs, lane, corners, mesh.uvs),
-                _ => set_all(&mut uvs, lane, [0, 1, 2], &PLAIN_UVS),
+                Some((mesh, corners)) if !mesh.uvs.is_empty() => set_corners(&mut uvs, lane, corners, mesh.uvs),
+                _ => set_corners(&mut uvs, lane, [0, 1, 2], &PLAIN_UVS),
             }
         }
-        self.vectorizer.run(Parametrize {
-            uvs: &uvs,
-            vertices: &self.triangles.vertices,
-            barycentrics: &self.surfaces.barycentrics,
-        })
+        let (uvs, barycentrics) = (&uvs, &self.surfaces.barycentrics);
+        if self.are_recorded {
+            let triangles = &self.records;
+            self.vectorizer.run(Parametrize {
+                uvs,
+                triangles,
+                barycentrics,
+            })
+        } else {
+            let triangles = &self.gathered;
+            self.vectorizer.run(Parametrize {
+                uvs,
+                triangles,
+                barycentrics,
+            })
+        }
     }
-}
-
-/// The mesh in world space, if it is one, that a lane hit, and the corners of the triangle.
-#[inline]
-fn triangle_hit<'a, 'm>(meshes: &'m [Mesh<'a>], hits: &HitPacket, lane: usize) -> Option<(&'m Mesh<'a>, [u32; 3])> {
-    // What is not hit is beyond all geometries.
-    let mesh = meshes.get(hits.geometry[lane] as usize)?;
-    let corners = mesh.indices.get(hits.primitive[lane] as usize)?;
-    (hits.instance[lane] == HitPacket::NONE).then_some((mesh, *corners))
 }
 
 impl Surfaces {
@@ -227,62 +223,32 @@ impl Surfaces {
     }
 }
 
-impl Triangles {
-    #[inline(always)]
-    fn set(&mut self, lane: usize, mesh: &Mesh<'_>, corners: [u32; 3]) {
-        self.side[lane] = mesh.side;
-        self.has_no_normals[lane] = if mesh.normals.is_empty() {
-            set_all(&mut self.vertices, lane, corners, mesh.positions);
-            // They are mostly in their lane already.
-            if !self.has_no_normals[lane] {
-                set_all(&mut self.normals, lane, [0, 1, 2], &NO_NORMALS);
-            }
-            true
-        } else {
-            // Corners that have positions then have normals, as the compiler sees.
-            set_all(&mut self.vertices, lane, corners, &mesh.positions[..mesh.normals.len()]);
-            set_all(&mut self.normals, lane, corners, mesh.normals);
-            false
-        };
-    }
-}
-
-/// Puts what three corners have of `values` into a lane. One by one: an array of them would go by way of memory.
-#[inline(always)]
-fn set_all<T: Copy>(lanes: &mut [[T; LANES]; 3], lane: usize, corners: [u32; 3], values: &[T]) {
-    for i in 0..3 {
-        lanes[i][lane] = values[corners[i] as usize];
-    }
-}
-
 /// See [`SurfaceLanes::compute`].
-struct Compute<'a> {
+struct Compute<'a, T> {
     rays: &'a RayPacket,
-    triangles: &'a Triangles,
+    triangles: &'a T,
     /// Written at the end, all at once: the compiler cannot know that it is apart from the others.
     surfaces: &'a mut Surfaces,
 }
 
-impl Kernel for Compute<'_> {
+impl<T: TriangleLanes> Kernel for Compute<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
         let Self { rays, triangles, .. } = self;
-        let Triangles { vertices, normals, .. } = triangles;
         let mut surfaces = Surfaces::default();
         for i in 0..LANES {
-            let vertices = [vertices[0][i], vertices[1][i], vertices[2][i]];
-            let normals = [normals[0][i], normals[1][i], normals[2][i]];
-            let point = triangle::point(&vertices, rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
-            let (barycentrics, ng) = point.in_single_precision();
-            let Facing { side, ns: given } = Facing::at(&normals, triangles.side[i], ng, barycentrics);
-            let ng = ng * side;
+            let (origin, direction) = (rays.origin(i).as_dvec3(), rays.direction(i).as_dvec3());
+            let point = triangle::point(&triangles.vertices(i), origin, direction);
+            let TrianglePoint { p: exact, barycentrics } = point;
+            let (error, ng) = triangles.plane(i);
+            let given = shading_normal(&triangles.normals(i), barycentrics);
             let has_ns = (given.x != 0.0) | (given.y != 0.0) | (given.z != 0.0);
-            let p = point.p.as_vec3();
+            let p = exact.as_vec3();
             surfaces.p.set(i, p);
             surfaces.distance[i] = p.distance(rays.origin(i));
-            surfaces.error[i] = (point.error + rounding_error(point.p, ng)) as f32;
+            surfaces.error[i] = (error + rounding_error(exact, ng)) as f32;
             surfaces.ng.set(i, ng);
             let ns = |given: f32, ng: f32| if has_ns { given } else { ng };
             surfaces
@@ -295,24 +261,23 @@ impl Kernel for Compute<'_> {
 }
 
 /// See [`SurfaceLanes::parametrize`].
-struct Parametrize<'a> {
+struct Parametrize<'a, T> {
     uvs: &'a [[Vec2; LANES]; 3],
-    vertices: &'a [[Vec3; LANES]; 3],
+    triangles: &'a T,
     barycentrics: &'a Vec2Lanes,
 }
 
-impl Kernel for Parametrize<'_> {
+impl<T: TriangleLanes> Kernel for Parametrize<'_, T> {
     type Output = Parametrizations;
 
     #[inline(always)]
     fn call(self) -> Parametrizations {
-        let Self { uvs, vertices, .. } = self;
+        let Self { uvs, triangles, .. } = self;
         let mut lanes = Parametrizations::default();
         for i in 0..LANES {
-            let vertices = [vertices[0][i], vertices[1][i], vertices[2][i]];
             let uvs = [uvs[0][i], uvs[1][i], uvs[2][i]];
             let Parametrization { dpdu, dpdv, uv } =
-                Parametrization::at(&uvs, &vertices, self.barycentrics.get(i).into());
+                Parametrization::at(&uvs, &triangles.vertices(i), self.barycentrics.get(i).into());
             lanes.dpdu.set(i, dpdu);
             lanes.dpdv.set(i, dpdv);
             lanes.uv.set(i, uv);
@@ -324,7 +289,9 @@ impl Kernel for Parametrize<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Geometry, GeometryId, Group, Instance, PrimitiveId, Sphere, WorldBuilder};
+    use crate::geometry::{
+        Geometry, GeometryId, Group, Instance, PrimitiveId, Shape, Sphere, TriangleMesh, WorldBuilder,
+    };
     use crate::math::{AnimatedTransform, DAffine3, DVec3};
 
     /// Meshes bare, with normals (one of which faces away), with texture coordinates, moving; a sphere; an instance.
@@ -382,7 +349,8 @@ mod tests {
     fn lanes_are_the_surfaces_of_single_rays() {
         let world = world();
         let [mut lanes, _] = SurfaceLanes::two(&world);
-        for round in 0..20 {
+        // Of three kinds, all triangles have records; of six they do not.
+        for (round, kinds) in (0..40).map(|turn| (turn / 2, [3, 6][turn % 2])) {
             let (mut rays, mut hits) = (RayPacket::EMPTY, HitPacket::EMPTY);
             for lane in 0..LANES - 1 {
                 let turn = (round * LANES + lane) as f32;
@@ -391,13 +359,14 @@ mod tests {
                     lane,
                     &Ray::new(Vec3::new(0.05, -0.1, -2.0), toward, 0.05 * round as f32),
                 );
-                hits.geometry[lane] = ((lane + round) % 6 % 5) as u32;
+                hits.geometry[lane] = ((lane + round) % kinds % 5) as u32;
                 hits.primitive[lane] = 0;
-                if (lane + round) % 6 == 5 {
+                if (lane + round) % kinds == 5 {
                     (hits.geometry[lane], hits.instance[lane]) = (1, 0);
                 }
             }
             lanes.gather(&rays, &hits);
+            assert_eq!(lanes.are_recorded, kinds == 3);
             lanes.compute(&rays, &hits, |ray, hit, _| world.interaction(ray, hit));
             for lane in 0..LANES - 1 {
                 let (ray, hit) = (rays.get(lane), hits.get(lane).unwrap());

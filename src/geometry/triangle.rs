@@ -50,30 +50,47 @@ fn extent([a, b, c]: &[Vec3; 3]) -> DVec3 {
     DVec3::new(axis(a.x, b.x, c.x), axis(a.y, b.y, c.y), axis(a.z, b.z, c.z))
 }
 
+/// The plane of a triangle, in the space of its vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TrianglePlane {
+    /// See [`triangle_error`].
+    pub error: f64,
+    /// Unit normal, on the side from which the vertices run anticlockwise; NaN for a triangle without area.
+    pub ng: DVec3,
+}
+
+impl TrianglePlane {
+    /// Of the triangle with these vertices. Without branches, so that it is vectorised over lanes.
+    #[inline(always)]
+    pub fn of(vertices: &[Vec3; 3]) -> Self {
+        let extent = extent(vertices);
+        let [a, b, c] = vertices.map(Vec3::as_dvec3);
+        let cross = (b - a).cross(c - a);
+        let inverse_area = 1.0 / cross.length();
+        Self {
+            error: plane_error(extent, inverse_area),
+            ng: cross * inverse_area,
+        }
+    }
+}
+
 /// A point of a triangle, in the space of its vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrianglePoint {
     /// The point.
     pub p: DVec3,
-    /// See [`triangle_error`].
-    pub error: f64,
-    /// Unit normal, on the side from which the vertices run anticlockwise; NaN for a triangle without area.
-    pub ng: DVec3,
     /// Barycentric coordinates of the second and the third vertex.
-    pub barycentrics: [f64; 2],
+    pub barycentrics: [f32; 2],
 }
 
 /// The point where a ray's line meets a triangle's plane, or the nearest of the triangle, nearly, where a backend rounded otherwise
-/// (Moeller and Trumbore 1997). Without branches, so that it is vectorised over lanes.
+/// (Moeller and Trumbore 1997). Without branches, as [`TrianglePlane::of`] is.
 #[inline(always)]
 pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> TrianglePoint {
-    let extent = extent(vertices);
     let vertices = vertices.map(Vec3::as_dvec3);
     let (e1, e2) = (vertices[1] - vertices[0], vertices[2] - vertices[0]);
-    let cross = e1.cross(e2);
-    let inverse_area = 1.0 / cross.length();
     let moment = (origin - vertices[0]).cross(direction);
-    let inverse = -1.0 / direction.dot(cross);
+    let inverse = -1.0 / direction.dot(e1.cross(e2));
     let (v, w) = (e2.dot(moment) * inverse, -e1.dot(moment) * inverse);
     // A ray within the plane: NaN or infinite.
     let is_finite = v.is_finite() & w.is_finite();
@@ -83,17 +100,7 @@ pub(super) fn point(vertices: &[Vec3; 3], origin: DVec3, direction: DVec3) -> Tr
     let w = if is_finite { w * scale } else { 1.0 / 3.0 };
     TrianglePoint {
         p: vertices[0] + e1 * v + e2 * w,
-        error: plane_error(extent, inverse_area),
-        ng: cross * inverse_area,
-        barycentrics: [v, w],
-    }
-}
-
-impl TrianglePoint {
-    /// Barycentric coordinates of the second and the third vertex, and the normal, in single precision.
-    #[inline(always)]
-    pub fn in_single_precision(&self) -> ([f32; 2], Vec3) {
-        (self.barycentrics.map(|b| b as f32), self.ng.as_vec3())
+        barycentrics: [v as f32, w as f32],
     }
 }
 
@@ -114,15 +121,6 @@ pub(super) struct Corners {
     pub side: f32,
 }
 
-/// Which way a mesh's surface faces at a point of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Facing {
-    /// 1 if the geometric normal is on the side from which the vertices run anticlockwise, -1 if on the other.
-    pub side: f32,
-    /// Interpolated shading normal, unit length; zero without normals, or where they cancel.
-    pub ns: Vec3,
-}
-
 /// How texture coordinates lie on a mesh at a point of a triangle: see [`SurfaceInteraction`](super::SurfaceInteraction).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parametrization {
@@ -131,27 +129,30 @@ pub(super) struct Parametrization {
     pub uv: Vec2,
 }
 
-impl Facing {
-    /// At the point with the barycentrics `v` and `w` of the second and the third corner, where the anticlockwise normal is `ng`, with
-    /// `normals` and `side` as [`Corners`] has them. Without branches, as [`point`] is.
-    #[inline(always)]
-    pub fn at(normals: &[Vec3; 3], side: f32, ng: Vec3, [v, w]: [f32; 2]) -> Self {
-        let u = 1.0 - v - w;
-        let [a, b, c] = *normals;
-        // With normals given they say which side is out, as in pbrt.
-        let cos = ng.dot(a + b + c);
-        let mean = a * u + b * v + c * w;
-        let inverse_length = 1.0 / mean.length();
-        let has_direction = (inverse_length > 0.0) & (inverse_length < f32::INFINITY);
-        Self {
-            side: if cos == 0.0 { side } else { 1.0_f32.copysign(cos) },
-            ns: mean * if has_direction { inverse_length } else { 0.0 },
-        }
-    }
+/// 1 if the geometric normal is on the side from which the vertices run anticlockwise, where it is `ng`, and -1 if on the other, with
+/// `normals` and `side` as [`Corners`] has them. Without branches.
+#[inline(always)]
+pub(super) fn facing_side(normals: &[Vec3; 3], side: f32, ng: Vec3) -> f32 {
+    let [a, b, c] = *normals;
+    // With normals given they say which side is out, as in pbrt.
+    let cos = ng.dot(a + b + c);
+    if cos == 0.0 { side } else { 1.0_f32.copysign(cos) }
+}
+
+/// The interpolated shading normal at the point with the barycentrics `v` and `w` of the second and the third corner, unit length; zero
+/// without normals, or where they cancel. Without branches.
+#[inline(always)]
+pub(super) fn shading_normal(normals: &[Vec3; 3], [v, w]: [f32; 2]) -> Vec3 {
+    let u = 1.0 - v - w;
+    let [a, b, c] = *normals;
+    let mean = a * u + b * v + c * w;
+    let inverse_length = 1.0 / mean.length();
+    let has_direction = (inverse_length > 0.0) & (inverse_length < f32::INFINITY);
+    mean * if has_direction { inverse_length } else { 0.0 }
 }
 
 impl Parametrization {
-    /// At the same point, with `uvs` as [`Corners`] has them. Without branches.
+    /// At the point with the barycentrics `v` and `w` of the second and the third corner, with `uvs` as [`Corners`] has them. Without branches.
     #[inline(always)]
     pub fn at(uvs: &[Vec2; 3], vertices: &[Vec3; 3], [v, w]: [f32; 2]) -> Self {
         let u = 1.0 - v - w;

@@ -1,5 +1,6 @@
 //! Everything that a ray can hit: geometries, groups of them, and instances of groups. The input of every backend.
 
+use super::triangle_records::TriangleRecords;
 use super::{GeometryId, GroupId, InstanceId, Shape};
 use crate::error::{Error, Result};
 use crate::math::{AnimatedTransform, Bounds3};
@@ -110,6 +111,7 @@ impl WorldBuilder {
             }
         }
         Ok(World {
+            records: TriangleRecords::of(&self.geometries, &self.root.geometries),
             geometries: self.geometries,
             root: self.root.geometries,
             groups: members,
@@ -164,6 +166,7 @@ pub struct World {
     root: Vec<GeometryId>,
     groups: Vec<Vec<GeometryId>>,
     instances: Vec<Instance>,
+    records: TriangleRecords,
 }
 
 impl World {
@@ -197,6 +200,11 @@ impl World {
     #[inline]
     pub fn instance(&self, id: InstanceId) -> &Instance {
         &self.instances[id.index()]
+    }
+
+    /// What is known of triangles before they are hit.
+    pub(super) fn triangle_records(&self) -> &TriangleRecords {
+        &self.records
     }
 
     /// A box around the members of a group over all times, in its own space.
@@ -240,10 +248,10 @@ impl World {
                 .sum::<u64>()
     }
 
-    /// Bytes of the geometries' arrays.
+    /// Bytes of the geometries' arrays, and of what is known of triangles before they are hit.
     pub fn memory(&self) -> usize {
         let shapes = self.geometries.iter().map(|geometry| geometry.shape.memory());
-        shapes.sum::<usize>() + size_of_val(self.instances.as_slice())
+        shapes.sum::<usize>() + size_of_val(self.instances.as_slice()) + self.records.memory()
     }
 
     fn union_of(&self, members: &[GeometryId]) -> Bounds3 {

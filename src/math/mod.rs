@@ -11,6 +11,7 @@ mod lanes;
 mod motion;
 mod offset;
 mod packing;
+mod shuffle;
 mod vectorize;
 
 pub use bounds::Bounds3;
@@ -22,5 +23,6 @@ pub use lanes::{LANES, Lanes, Vec2Lanes, Vec3Lanes, VectorLanes};
 pub use motion::{AnimatedTransform, Decomposition, transform_point};
 pub use offset::{gamma, offset_ray_origin};
 pub(crate) use packing::columns;
-pub use packing::{Append, Columns, Each, Packing, Shuffle};
+pub use packing::{Append, Columns, Each, Packing};
+pub use shuffle::{Column, Shuffle};
 pub use vectorize::{Kernel, Vectorizer};

@@ -3,27 +3,13 @@
 //! A packet's columns, of eight numbers of 32 bits each, are permuted alike: chosen lanes come first, in their order, behind what the queue's
 //! last packet holds already; those that do not fit there begin the next one.
 
-use super::{Kernel, LANES, LaneSet, Lanes, Vectorizer};
+use super::shuffle::{Column, Shuffle, ShuffleKernel};
+use super::{LANES, LaneSet, Lanes, Vectorizer};
 
 /// What eight lanes hold, a number of each in every column, to be put into packets `P`.
 pub trait Columns<P = Self> {
     /// Writes the lanes of `self` to `last` behind what it holds, and to `next`, as `packing` says.
     fn pack<S: Shuffle>(&self, packing: &Packing<S>, last: &mut P, next: &mut P);
-}
-
-/// Eight numbers of 32 bits.
-pub type Column = [u32; LANES];
-
-/// Instructions that permute and choose numbers of columns. Of plain choices the compiler would make branches.
-pub trait Shuffle: Copy {
-    /// The eight numbers of a byte each.
-    fn widen(self, bytes: u64) -> Column;
-
-    /// Lane i of the result is lane `from[i]` of `column`, each in 0..8.
-    fn shuffle(self, column: Column, from: Column) -> Column;
-
-    /// The lanes of `a` whose bits are all set in `mask`, and those of `b` that are not set there.
-    fn select(self, mask: Column, a: Column, b: Column) -> Column;
 }
 
 /// Where the lanes of a packet go.
@@ -153,112 +139,21 @@ impl Vectorizer {
     /// Adds `chosen` lanes to queues of `len` lanes.
     #[inline(always)]
     pub fn append(self, chosen: LaneSet, len: usize, append: impl Append) {
-        #[cfg(target_arch = "x86_64")]
-        match self.arch() {
-            pulp::Arch::V4(simd) => {
-                return simd.vectorize(Appending {
-                    shuffle: simd,
-                    chosen,
-                    len,
-                    append,
-                });
-            }
-            pulp::Arch::V3(simd) => {
-                return simd.vectorize(Appending {
-                    shuffle: simd,
-                    chosen,
-                    len,
-                    append,
-                });
-            }
-            _ => {}
-        }
-        self.run(Appending {
-            shuffle: Portable,
-            chosen,
-            len,
-            append,
-        });
+        self.shuffle(Appending { chosen, len, append });
     }
 }
 
 /// See [`Vectorizer::append`].
-struct Appending<S, A> {
-    shuffle: S,
+struct Appending<A> {
     chosen: LaneSet,
     len: usize,
     append: A,
 }
 
-impl<S: Shuffle, A: Append> Kernel for Appending<S, A> {
-    type Output = ();
-
+impl<A: Append> ShuffleKernel for Appending<A> {
     #[inline(always)]
-    fn call(self) {
-        self.append.append(&Packing::new(self.shuffle, self.chosen, self.len));
-    }
-}
-
-/// Plain Rust, for any machine.
-#[derive(Clone, Copy, Debug)]
-struct Portable;
-
-impl Shuffle for Portable {
-    #[inline(always)]
-    fn widen(self, bytes: u64) -> Column {
-        bytes.to_le_bytes().map(u32::from)
-    }
-
-    #[inline(always)]
-    fn shuffle(self, column: Column, from: Column) -> Column {
-        from.map(|lane| column[lane as usize % LANES])
-    }
-
-    #[inline(always)]
-    fn select(self, mask: Column, a: Column, b: Column) -> Column {
-        std::array::from_fn(|i| (a[i] & mask[i]) | (b[i] & !mask[i]))
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-mod x86 {
-    use pulp::cast;
-    use pulp::x86::{V3, V4};
-
-    use super::{Column, Shuffle};
-
-    impl Shuffle for V3 {
-        #[inline(always)]
-        fn widen(self, bytes: u64) -> Column {
-            cast(self.avx2._mm256_cvtepu8_epi32(cast([bytes, 0])))
-        }
-
-        #[inline(always)]
-        fn shuffle(self, column: Column, from: Column) -> Column {
-            cast(self.avx2._mm256_permutevar8x32_epi32(cast(column), cast(from)))
-        }
-
-        #[inline(always)]
-        fn select(self, mask: Column, a: Column, b: Column) -> Column {
-            cast(self.avx2._mm256_blendv_epi8(cast(b), cast(a), cast(mask)))
-        }
-    }
-
-    impl Shuffle for V4 {
-        #[inline(always)]
-        fn widen(self, bytes: u64) -> Column {
-            Shuffle::widen(*self, bytes)
-        }
-
-        #[inline(always)]
-        fn shuffle(self, column: Column, from: Column) -> Column {
-            Shuffle::shuffle(*self, column, from)
-        }
-
-        #[inline(always)]
-        fn select(self, mask: Column, a: Column, b: Column) -> Column {
-            Shuffle::select(*self, mask, a, b)
-        }
+    fn call<S: Shuffle>(self, shuffle: S) {
+        self.append.append(&Packing::new(shuffle, self.chosen, self.len));
     }
 }
 
@@ -325,6 +220,7 @@ impl<T: Copy> Columns for Each<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::shuffle::Portable;
 
     struct Numbers<'a>(&'a mut Vec<[u32; LANES]>, [u32; LANES]);
 
